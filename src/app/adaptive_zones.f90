@@ -36,7 +36,7 @@ contains
 
     call stepper%advance_with_layers(model, deck%linear_solver, event, switched, error)
     if (allocated(error) .or. .not. switched) return
-    notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time), deck%case%units)
+    notes = zone_notes(model%plate%setup%delaminations, moment(deck, stepper%now%time), deck%case%units)
     do i = 1, size(notes)
       call log%note(notes(i)%text)
     end do
@@ -80,7 +80,7 @@ contains
     !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
 
-    call visit_zones(model%setup%delaminations, archive)
+    call visit_zones(model%plate%setup%delaminations, archive)
     call stepper%visit(archive, model, error)
   end subroutine visit_evolving
 

@@ -26,6 +26,7 @@ module initial_states
   use logger, only: log_t
   use mesh_parameters, only: symmetry_none
   use model_building, only: create_model
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use plate_cuts, only: plate_cut_t
   use root_output, only: print_lines
@@ -245,22 +246,22 @@ contains
     type(deck_t) :: old
     integer :: i
 
-    call load_transfer(deck, model, stepper, transfer, record%mapping, old, error)
+    call load_transfer(deck, model%plate, stepper, transfer, record%mapping, old, error)
     if (allocated(error)) return
     call log%note('The plate starts from the end of the run of '//deck%setup%initial%from//'.')
-    notes = zone_notes(model%setup%delaminations, 'the start', deck%case%units)
+    notes = zone_notes(model%plate%setup%delaminations, 'the start', deck%case%units)
     do i = 1, size(notes)
       call log%note(notes(i)%text)
     end do
     ! At rest, damage would only grow by errors of the mapping.
     call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%setup%loading%start > 0 .and. &
                                  deck%setup%initial%motion == motion_rest)
-    call begin_contact(deck, old, stepper%now%indentation, log)
+    call begin_contact(deck, old, stepper%now%impact%indentation, log)
     call stepper%begin_inherited(model, transfer, deck%setup%initial%motion, error)
     if (allocated(error)) return
-    call record%inherit(model, stepper%now)
+    call record%inherit(model%plate, stepper%now)
     if (is_mapped(deck, old)) then
-      call record%mapping%note(model, stepper%now, after_mapping)
+      call record%mapping%note(model%plate, stepper%now, after_mapping)
       if (record%mapping%is_cut()) call log%note(record%mapping%cut_line(deck%setup%delaminations%below_ply))
       call log%note(record%mapping%line(deck%setup%delaminations%below_ply))
       call log%note(record%mapping%energy_line(stepper%now%holds_damage))
@@ -297,9 +298,9 @@ contains
   end subroutine begin_contact
 
   !> Loads the state of the other run, on its mesh, and transfers it to this one's. Collective.
-  subroutine load_transfer(deck, model, stepper, transfer, mapping, old, error)
+  subroutine load_transfer(deck, plate, stepper, transfer, mapping, old, error)
     type(deck_t), intent(in) :: deck
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The time stepper; receives the inherited state
     class(stepper_t), intent(inout) :: stepper
     !> Receives the map of points and elements
@@ -315,32 +316,32 @@ contains
     type(state_t), allocatable :: state
     type(mesh_transfer_t) :: mapped
 
-    call open_checkpoint(deck%setup%initial%from, model%communicator, archive, old, error)
+    call open_checkpoint(deck%setup%initial%from, plate%communicator, archive, old, error)
     if (allocated(error)) return
     allocate (old_model)
-    call create_model(old%setup, model%communicator, old_model, error)
+    call create_model(old%setup, plate%communicator, old_model, error)
     if (allocated(error)) return
     allocate (state, source=new_state(old_model))
-    call visit_inheritance(state, archive, old_model)
+    call visit_inheritance(state, archive, old_model%plate)
     call archive%item('ledger/strain', state%ledger%strain)
     call archive%close(error)
     if (allocated(error)) return
     if (is_mapped(deck, old)) then
       mapped%origin = deck%setup%initial%cut_at
       allocate (transfer, source=mapped)
-      call note_before(cut_of(deck), old_model, state, mapping)
-      call put_fractions(state%interfaces%cohesive, old_model)
+      call note_before(cut_of(deck), old_model%plate, state, mapping)
+      call put_fractions(state%interfaces%cohesive, old_model%plate)
     else
       allocate (layer_transfer_t :: transfer)
     end if
-    transfer%communicator = model%communicator
-    call visit_inheritance(state, transfer, old_model)
-    call transfer%turn_to(old_model%mesh, model%mesh)
-    call visit_inheritance(stepper%now, transfer, model)
+    transfer%communicator = plate%communicator
+    call visit_inheritance(state, transfer, old_model%plate)
+    call transfer%turn_to(old_model%plate%mesh, plate%mesh)
+    call visit_inheritance(stepper%now, transfer, plate)
     if (.not. is_mapped(deck, old)) return
     associate (now => stepper%now)
-      call set_damage(now%interfaces%cohesive, model)
-      call set_slips(now%interfaces%cohesive, model, now%motion%displacement)
+      call set_damage(now%interfaces%cohesive, plate)
+      call set_slips(now%interfaces%cohesive, plate, now%motion%displacement)
     end associate
   end subroutine load_transfer
 
@@ -348,8 +349,8 @@ contains
   subroutine note_before(cut, old_model, state, mapping)
     !> The part; the full plate: nothing is cut
     type(plate_cut_t), intent(in) :: cut
-    !> The other run's model; points and elements keep the areas inside of the part
-    type(model_t), intent(inout) :: old_model
+    !> Plate of the other run; points and elements keep the areas inside of the part
+    type(composite_plate_t), intent(inout) :: old_model
     !> Its state
     type(state_t), intent(inout) :: state
     !> Receives the quantities
@@ -359,8 +360,8 @@ contains
     if (.not. cut%is_whole(old_model%setup%plate%length)) then
       call mapping%note(old_model, state, before_cutting)
       parts = cut%of_nodes(old_model%mesh)
-      if (allocated(old_model%contact_area)) &
-        old_model%contact_area = old_model%contact_area*parts(old_model%mesh%point_node(old_model%distribution%points))
+      if (allocated(old_model%interfaces%contact_area)) old_model%interfaces%contact_area = &
+        old_model%interfaces%contact_area*parts(old_model%mesh%point_node(old_model%distribution%points))
       parts = cut%of_cells(old_model%mesh)
       if (allocated(state%plies%bands)) state%plies%bands%area = &
         state%plies%bands%area*parts(old_model%mesh%element_cell(old_model%distribution%elements))

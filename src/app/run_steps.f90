@@ -33,17 +33,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: steps
 
-    steps = stepper%steps_between_checks(model%mesh%elements())
+    steps = stepper%steps_between_checks(model%plate%mesh%elements())
     do
       call advance(deck, model, stepper, event, log, error)
       if (allocated(error)) then
         if (error%code == exit_convergence) error%message = error%message//slow_motion_advice(deck)
         ! The step was accepted, but its failed plies have found no equilibrium.
         if (stepper%now%time > record%time) &
-          call record%observe(model, stepper%now, stepper%steps_between_stages())
+          call record%observe(model%plate, stepper%now, stepper%steps_between_stages())
         return
       end if
-      call record%observe(model, stepper%now, stepper%steps_between_stages())
+      call record%observe(model%plate, stepper%now, stepper%steps_between_stages())
       if (check_is_due(deck%output, stepper%now%step, steps) .or. stepper%now%time >= event) return
       if (row_is_due(deck%output, stepper%now%step)) return
     end do

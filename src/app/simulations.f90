@@ -109,7 +109,7 @@ contains
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
-    call write_mesh(self%model, self%fields, error)
+    call write_mesh(self%model%plate, self%fields, error)
     self%is_ready = .not. allocated(error)
   end subroutine initialize
 
@@ -155,13 +155,13 @@ contains
     call self%timers%start('model')
     call create_model(deck%setup, communicator, self%model, error)
     call self%timers%stop('model')
-    self%model%profile = profile
+    self%model%plate%profile = profile
     if (allocated(error)) return
     call choose_stepper(deck%stepping, self%stepper)
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, &
                             append .or. deck%setup%initial%is_inherited, error)
     if (allocated(error)) return
-    self%record = new_run_record(self%model)
+    self%record = new_run_record(self%model%plate)
     self%record%filter%frequency = deck%output%force_filter
     call log_model(self%deck, self%model, self%stepper, self%log)
     call start_progress(self%progress, self%stepper, end_of(self))
@@ -204,7 +204,7 @@ contains
     call self%fields%resume(communicator, self%base, self%provenance, part_of(self%deck), &
                             merge(shown_time(self%stepper%now%time), -1.0_wp, self%fields_clock%interval > 0), error)
     if (allocated(error)) return
-    call write_mesh(self%model, self%fields, error)
+    call write_mesh(self%model%plate, self%fields, error)
     call start_progress(self%progress, self%stepper, end_of(self))
     if (allocated(error)) return
     call remove_summary(self)
@@ -328,7 +328,7 @@ contains
     end if
     if (row_due) call self%history%write_row(row_of(self%model, self%stepper, self%record), error)
     if (allocated(error)) return
-    if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
+    if (fields_due) call write_fields(self%model%plate, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
@@ -359,7 +359,7 @@ contains
 
     ! In a complete run that is continued in another folder, no step writes the last fields.
     if (self%deck%output%fields_every <= 0 .or. self%fields%is_empty()) &
-      call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
+      call write_fields(self%model%plate, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     if (has_ended_by_failure(self)) call self%log%note('The plate has failed, which ends the run at '// &
                                                        moment(self%deck, self%stepper%now%time)//'.')

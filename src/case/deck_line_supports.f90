@@ -9,7 +9,7 @@ module deck_line_supports
   use line_loads, only: line_load_t, along_x, along_y
   use material_parameters, only: largest_strain
   use mesh_parameters, only: is_mirrored, symmetry_point, edge_clamped, edge_elastic, edge_free
-  use model_building, only: unrestrained
+  use plate_constraints, only: unrestrained
   use packed_matrices, only: inverse, unpacked
   use roundings, only: rounding
   use stacking, only: section_of, section_t, stacked_plies

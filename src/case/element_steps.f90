@@ -13,6 +13,7 @@ module element_steps
   use kinds, only: wp
   use mesh_parameters, only: edge_free, mesh_t, symmetry_none
   use model_building, only: create_model
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use setups, only: setup_t
@@ -77,13 +78,13 @@ contains
     end if
     call create_model(setup, alone, model, error)
     if (allocated(error)) return
-    plies = new_ply_failure(model)
+    plies = new_ply_failure(model%plate)
     scaling = create_inertia_scaling(deck%setup, deck%stepping%central%mass_scaling)
-    call highest_element_frequency(model, largest_stiffness(plies), scaling, frequency, element, of_elements)
+    call highest_element_frequency(model%plate, largest_stiffness(plies), scaling, frequency, element, of_elements)
     if (present(slope)) then
       do direction = 1, 2
-        frequency = max(frequency, stiffened_frequency(model, largest_stiffness(plies), of_elements, &
-                                                       sloped_motion(model, slope, direction)))
+        frequency = max(frequency, stiffened_frequency(model%plate, largest_stiffness(plies), of_elements, &
+                                                       sloped_motion(model%plate, slope, direction)))
       end do
     end if
     if (frequency > 0) step = 2/frequency
@@ -92,19 +93,19 @@ contains
   !> Motion of a plate with a uniform slope along one direction and the membrane strain of a half sine with this largest
   !> slope, a quarter of its square. The uniform slope causes a strain of half the square, the in-plane displacement one
   !> of minus a quarter.
-  pure function sloped_motion(model, slope, direction) result(motion)
-    type(model_t), intent(in) :: model
+  pure function sloped_motion(plate, slope, direction) result(motion)
+    type(composite_plate_t), intent(in) :: plate
     !> The slope
     real(wp), intent(in) :: slope
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> (5, points)
-    real(wp) :: motion(5, model%mesh%points())
+    real(wp) :: motion(5, plate%mesh%points())
     integer :: point
 
     motion = 0
     do point = 1, size(motion, 2)
-      associate (place => model%mesh%node_coordinates(direction, model%mesh%point_node(point)))
+      associate (place => plate%mesh%node_coordinates(direction, plate%mesh%point_node(point)))
         motion(3, point) = slope*place
         motion(direction, point) = -slope**2/4*place
       end associate

@@ -54,6 +54,6 @@ contains
       steps = steps + 1
       call cpu_time(end)
     end do
-    seconds = (end - begin)/(real(steps, wp)*model%elements%elements)
+    seconds = (end - begin)/(real(steps, wp)*model%plate%elements%elements)
   end function measured_element_time
 end module step_timings

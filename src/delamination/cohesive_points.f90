@@ -7,12 +7,12 @@ module cohesive_points
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use surface_friction, only: sliding_t
   use kinds, only: wp
+  use linear_softening, only: damage_on_curve, fraction_growth
   use roundings, only: rounding
   implicit none
   private
-  public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, may_grow, &
-            point_class, opened, &
-            undamaged_energy, stored_energy, mode_mixture, dissipated_fraction, fraction_growth, damage_at_fraction
+  public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, may_grow, point_class, &
+            opened, undamaged_energy, stored_energy, mode_mixture, dissipated_fraction, damage_at_fraction
 
   !> Classes of points: undamaged, damaged without growth, with growing damage in this state, failed.
   integer, parameter, public :: point_intact = 0, point_damaged = 1, point_growing = 2, point_failed = 3
@@ -61,7 +61,7 @@ contains
     if (may_grow(law, jumps, old)) then
       separation = separation_of(law, jumps)
       new%damage = grown_damage(law, separation, old)
-      new%dissipated = old%dissipated + separation%toughness*fraction_growth(law, old%damage, new%damage)
+      new%dissipated = old%dissipated + separation%toughness*fraction_growth(law%failure_ratio, old%damage, new%damage)
     end if
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
@@ -124,7 +124,7 @@ contains
     end associate
   end function may_grow
 
-  !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, not decreasing, theory (D2).
+  !> Damage with trial jumps, not decreasing, theory (D2).
   pure real(wp) function grown_damage(law, separation, old) result(damage)
     type(cohesive_law_t), intent(in) :: law
     !> Position of the jumps on the curve
@@ -132,13 +132,7 @@ contains
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
 
-    damage = 0
-    if (separation%ratio >= law%failure_ratio) then
-      damage = 1
-    else if (separation%ratio > 1) then
-      damage = min(1.0_wp, law%failure_ratio*(separation%ratio - 1)/(separation%ratio*(law%failure_ratio - 1)))
-    end if
-    damage = max(old%damage, damage)
+    damage = max(old%damage, damage_on_curve(separation%ratio, law%failure_ratio))
   end function grown_damage
 
   !> Class of a point from its damage in the last accepted and in the trial state.
@@ -213,16 +207,4 @@ contains
 
     damage = 1 - (1 - share)/(1 + (law%failure_ratio - 1)*share)
   end function damage_at_fraction
-
-  !> phi(d) - phi(d_old), without cancellation for small increments of damage.
-  pure real(wp) function fraction_growth(law, damage_from, damage_to) result(growth)
-    type(cohesive_law_t), intent(in) :: law
-    !> Damage before and after, from 0 to 1
-    real(wp), intent(in) :: damage_from, damage_to
-    real(wp) :: from, to
-
-    from = law%failure_ratio*(1 - damage_from) + damage_from
-    to = law%failure_ratio*(1 - damage_to) + damage_to
-    growth = law%failure_ratio*(damage_to - damage_from)/(from*to)
-  end function fraction_growth
 end module cohesive_points

@@ -4,11 +4,12 @@
 !> undamaged part acts in opening and closing, and growing damage releases the energy stored in closing.
 module cohesive_surfaces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
-  use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, fraction_growth, grown_damage, &
-                             separation_t, stored_energy, undamaged_energy
+  use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, grown_damage, separation_t, &
+                             stored_energy, undamaged_energy
   use cohesive_tangents, only: operator_stiffness, traction_slopes
   use surface_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
+  use linear_softening, only: fraction_growth
   implicit none
   private
   public :: cohesive_surfaces_t
@@ -85,7 +86,7 @@ contains
     if (damage > first) then
       first = min(damage, grown_damage(self%law, separation_of(self%law, from), old))
       separation = separation_of(self%law, to)
-      work = separation%toughness*fraction_growth(self%law, first, damage)
+      work = separation%toughness*fraction_growth(self%law%failure_ratio, first, damage)
     end if
     work = work + (1 - damage)*undamaged_energy(self%law, to) - (1 - first)*undamaged_energy(self%law, from)
     if (self%closing) return

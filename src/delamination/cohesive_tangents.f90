@@ -3,8 +3,9 @@ module cohesive_tangents
   use benzeggagh_kenane, only: toughness_gain
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, separation_t, separation_of, grown_damage, point_class, &
-                             fraction_growth, point_growing, point_failed
+                             point_growing, point_failed
   use kinds, only: wp
+  use linear_softening, only: fraction_growth
   implicit none
   private
   public :: operator_stiffness, traction_slopes, toughness_slopes, dissipation_slopes
@@ -73,7 +74,7 @@ contains
     new%damage = grown_damage(law, separation, old)
     if (point_class(old, new) /= point_growing) return
     remainder = law%failure_ratio*(1 - new%damage) + new%damage
-    slopes = toughness_slopes(law, separation)*fraction_growth(law, old%damage, new%damage) + &
+    slopes = toughness_slopes(law, separation)*fraction_growth(law%failure_ratio, old%damage, new%damage) + &
              separation%toughness*law%failure_ratio/remainder**2*damage_slopes(law, separation)
     slopes = slopes/separation%size
   end function dissipation_slopes

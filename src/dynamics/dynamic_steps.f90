@@ -71,17 +71,18 @@ contains
 
     associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
       new%time = old%time + self%step
-      new%load_factor = new%time/model%setup%loading%ramp_time
-      call new%interfaces%ties%ramp_down(model, self%step)
-      self%patch_square = sum((new%contact%weights(new%contact%points)/model%mesh%multiplicity)**2)
-      if (model%setup%impactor%is_present) self%coupling = begin_coupling(model, self%integrator, old, self%step)
-      self%keeps_velocity = model%setup%impactor%is_present .and. &
+      new%load_factor = new%time/model%plate%setup%loading%ramp_time
+      call new%interfaces%ties%ramp_down(model%plate, self%step)
+      self%patch_square = sum((new%impact%patch%weights(new%impact%patch%points)/model%plate%mesh%multiplicity)**2)
+      if (model%plate%setup%impactor%is_present) &
+        self%coupling = begin_coupling(model%plate, self%integrator, old, self%step)
+      self%keeps_velocity = model%plate%setup%impactor%is_present .and. &
                             .not. (allocated(self%guess) .or. model%has_point_stiffness)
       self%keeps_displacement = self%keeps_velocity &
-        .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
+        .and. is_exact(model%plate, operator, self%integrator%mass_factor(self%step))
       self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
-        .and. .not. (model%map%layered .or. operator%numbering%has_dependent_points .or. &
-        allocated(model%rig%constrained_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
+        .and. .not. (model%plate%map%layered .or. operator%numbering%has_dependent_points .or. &
+        allocated(model%rig%constrained_by) .or. allocated(model%loads%pressure) .or. size(model%loads%lines) > 0)
       if (self%skips_elements) self%skips_elements = self%coupling%forces_agree()
       call predict(self, model, old, new)
       if (.not. self%keeps_velocity) call self%complete(at)
@@ -104,7 +105,7 @@ contains
       new%motion%displacement = self%guess
     else if (.not. self%keeps_displacement) then
       new%motion%displacement = self%step*old%motion%velocity
-      call new%interfaces%contact%constrain_correction(model, new%motion%displacement)
+      call new%interfaces%contact%constrain_correction(model%plate, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_contact_closed(model, new%motion%displacement)
       if (has_moved_lines(model)) &
@@ -122,18 +123,18 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
       associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
-        if (self%keeps_displacement .and. new%iterations == 0) then
+        if (self%keeps_displacement .and. new%iterations%equilibrium == 0) then
           at%energy = 0
           call weight_start_forces(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
                                                       (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, &
                                    old%motion%inertia, old%motion%internal, residual)
-        else if (self%skips_elements .and. new%iterations == 1) then
+        else if (self%skips_elements .and. new%iterations%equilibrium == 1) then
           call find_internal_from_motion(self, model, old, new, at%energy)
           residual = 0
           return
         else
           call new%find_internal(model, old, at%energy)
-          if (self%keeps_velocity .and. new%iterations == 0) then
+          if (self%keeps_velocity .and. new%iterations%equilibrium == 0) then
             ! Newmark's acceleration if the velocity at the end is that at the start.
             new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
           else
@@ -142,19 +143,20 @@ contains
           call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
                              new%motion%internal, old%motion%internal, residual)
         end if
-        call new%contact%add_force(self%coupling%load()/model%mesh%multiplicity, residual)
-        if (size(model%lines) > 0) then
+        call new%impact%patch%add_force(self%coupling%load()/model%plate%mesh%multiplicity, residual)
+        if (size(model%loads%lines) > 0) then
           allocate (lines, lines_before, mold=residual)
-          call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
-          call model%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
+          call model%loads%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
+          call model%loads%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
           residual = residual + (1 - f)*lines + f*lines_before
           ! Prescribed lines act with a constant force over the step.
-          call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
+          call model%loads%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
           residual = residual + lines
         end if
-        if (.not. allocated(model%pressure)) return
-        amplitude = (1 - f)*model%setup%pressure%amplitude(new%time) + f*model%setup%pressure%amplitude(old%time)
-        residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
+        if (.not. allocated(model%loads%pressure)) return
+        amplitude = (1 - f)*model%plate%setup%pressure%amplitude(new%time) + &
+                    f*model%plate%setup%pressure%amplitude(old%time)
+        residual(3, :) = residual(3, :) + amplitude*model%loads%pressure(3, :)
       end associate
     end associate
   end subroutine find_residual
@@ -173,17 +175,17 @@ contains
     call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       new%motion%internal = 0
-      call new%contact%add_force(self%coupling%load()/model%mesh%multiplicity, new%motion%internal)
+      call new%impact%patch%add_force(self%coupling%load()/model%plate%mesh%multiplicity, new%motion%internal)
       call find_internal_forces(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, &
                                 old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
-    energy = model%product(new%motion%displacement, new%motion%internal)/2
-    if (.not. model%setup%thermal%is_present) return
+    energy = model%plate%product(new%motion%displacement, new%motion%internal)/2
+    if (.not. model%plate%setup%thermal%is_present) return
     ! Residual stresses store energy that is not the work of these forces: their work is added to the energy at the
     ! start. Done for all decks this would make linear steps 6 % slower.
-    energy = model%product(new%motion%displacement - old%motion%displacement, &
+    energy = model%plate%product(new%motion%displacement - old%motion%displacement, &
                            new%motion%internal + old%motion%internal)/2
-    if (model%communicator%is_root()) energy = energy + old%ledger%strain/model%mesh%multiplicity
+    if (model%plate%communicator%is_root()) energy = energy + old%ledger%strain/model%plate%mesh%multiplicity
   end subroutine find_internal_from_motion
 
   !> Residual relative to internal, inertia and contact forces.
@@ -194,18 +196,18 @@ contains
     real(wp) :: references(2, 3)
 
     associate (model => at%model, operator => at%operator, new => at%new)
-      if (self%keeps_displacement .and. new%iterations == 0) then
+      if (self%keeps_displacement .and. new%iterations%equilibrium == 0) then
         ! At least one iteration is needed.
         residual_norm = huge(residual_norm)
         return
-      else if (self%skips_elements .and. new%iterations == 1) then
+      else if (self%skips_elements .and. new%iterations%equilibrium == 1) then
         residual_norm = 0
         return
       end if
       references(:, 1) = sums_of_squares(operator%numbering, new%motion%internal)
       references(:, 2) = sums_of_squares(operator%numbering, new%motion%inertia)
       references(:, 3) = [self%patch_square*self%coupling%load()**2, 0.0_wp]
-      residual_norm = relative_residual(model, operator, at%equilibrium, at%residual, references, &
+      residual_norm = relative_residual(model%plate, operator, at%equilibrium, at%residual, references, &
                                         new%motion%displacement, self%may_stop(at), new%largest_forces)
     end associate
   end function residual_norm
@@ -216,7 +218,7 @@ contains
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
 
-    may_stop = at%new%iterations > 0 .or. .not. at%model%setup%impactor%is_present
+    may_stop = at%new%iterations%equilibrium > 0 .or. .not. at%model%plate%setup%impactor%is_present
   end function may_stop
 
   !> Solves for a correction by the tangent, and for the impactor's force.
@@ -229,7 +231,7 @@ contains
     logical :: converged
 
     at%negative_curvature = .false.
-    associate (integrator => self%integrator, has_impactor => at%model%setup%impactor%is_present)
+    associate (integrator => self%integrator, has_impactor => at%model%plate%setup%impactor%is_present)
       call find_tangent(at, [integrator%stiffness_factor(), integrator%mass_factor(self%step)], &
                         self%factor_is_due, self%renewal, self%uses_element_tangents, tangent, error)
       if (allocated(error)) return
@@ -240,7 +242,7 @@ contains
       self%factor_is_due = .not. converged
       if (has_impactor) call self%coupling%solve(at, tangent%is_factored(), error)
       if (allocated(error)) error%code = exit_convergence
-      call at%new%interfaces%contact%constrain_correction(at%model, at%correction)
+      call at%new%interfaces%contact%constrain_correction(at%model%plate, at%correction)
     end associate
   end subroutine find_correction
 
@@ -253,11 +255,11 @@ contains
     integer :: iterations
 
     associate (model => at%model, old => at%old, new => at%new)
-      if (.not. model%setup%impactor%is_present) return
-      new%patch_mean = new%contact_deflection(model)
-      call self%coupling%find_force(model%setup%impactor%indentation, old%indentation, new%patch_mean, 0.0_wp, &
-                                    iterations, error)
-      new%force_iterations = new%force_iterations + iterations
+      if (.not. model%plate%setup%impactor%is_present) return
+      new%impact%patch_mean = new%contact_deflection(model%plate)
+      call self%coupling%find_force(model%plate%setup%impactor%indentation, old%impact%indentation, &
+                                    new%impact%patch_mean, 0.0_wp, iterations, error)
+      new%iterations%force = new%iterations%force + iterations
     end associate
   end subroutine find_force
 
@@ -282,18 +284,18 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new)
       call new%count_step(old)
-      new%deflection = model%deflection(new%motion%displacement)
-      new%patch_mean = new%contact_deflection(model)
-      if (model%setup%impactor%is_present) then
-        new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
-                               self%coupling%force_end)
-        new%force = self%coupling%force_end
-        call commit_indentation(model%setup%impactor%indentation, new%indentation, &
-                                new%impactor%displacement - new%patch_mean)
+      new%impact%deflection = model%plate%deflection(new%motion%displacement)
+      new%impact%patch_mean = new%contact_deflection(model%plate)
+      if (model%plate%setup%impactor%is_present) then
+        new%impact%impactor = advance(model%plate%setup%impactor, old%impact%impactor, self%step, &
+                                      self%coupling%unknown, self%coupling%force_end)
+        new%impact%force = self%coupling%force_end
+        call commit_indentation(model%plate%setup%impactor%indentation, new%impact%indentation, &
+                                new%impact%impactor%displacement - new%impact%patch_mean)
       end if
-      call model%profile%enter('energy ledger')
+      call model%plate%profile%enter('energy ledger')
       call record_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)
-      call model%profile%leave()
+      call model%plate%profile%leave()
       if (.not. has_moved_lines(model)) return
       call move_lines(model, new%interfaces, new%time, new%motion, work)
       new%ledger%kinetic = new%ledger%kinetic + work

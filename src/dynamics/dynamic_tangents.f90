@@ -3,7 +3,7 @@ module dynamic_tangents
   use errors, only: error_t
   use impact_coupling, only: impact_coupling_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use newton_iterations, only: newton_iteration_t
   use plate_options, only: kinematics_linear, kinematics_von_karman
   use tangent_operators, only: tangent_operator_t
@@ -42,20 +42,20 @@ contains
       if (model%has_point_stiffness) then
         allocate (current_stiffness, mold=operator%added)
         call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), current_stiffness)
-        if (.not. due) due = operator%has_outdated_constraints(model, current_stiffness, max_changes)
+        if (.not. due) due = operator%has_outdated_constraints(model%plate, current_stiffness, max_changes)
       end if
       if (due) call operator%renew(model, new, factors(1), factors(2), error)
       if (allocated(error)) return
       call set_state(tangent, at, factors)
-      tangent%elements = model%setup%mesh%kinematics == kinematics_von_karman .and. (uses_element_tangents &
+      tangent%elements = model%plate%setup%mesh%kinematics == kinematics_von_karman .and. (uses_element_tangents &
                                                                                 .or. model%has_point_stiffness)
-      tangent%elements = .not. due .and. (model%setup%ply_damage%is_present .or. tangent%elements)
+      tangent%elements = .not. due .and. (model%plate%setup%ply_damage%is_present .or. tangent%elements)
       ! The operator has the compressive modulus for all strains of a compressed ply, the tangent for their mean.
-      tangent%elements = tangent%elements .or. model%setup%is_bimodular()
+      tangent%elements = tangent%elements .or. model%plate%setup%is_bimodular()
       if (model%has_point_stiffness) &
         call tangent%set_jump_stiffness(operator%added, current_stiffness, new%interfaces%cohesive%cohesive, &
                                         factors(1)*new%interfaces%cohesive%tangents_at( &
-                                        model, at%old%interfaces%cohesive, new%motion%displacement))
+                                        model%plate, at%old%interfaces%cohesive, new%motion%displacement))
       if (tangent%is_factored()) return
       tangent%diagonal = operator%diagonal
       if (model%has_point_stiffness) tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + current_stiffness
@@ -84,13 +84,13 @@ contains
 
   !> True: all forces but the impactor's are linear, and the operator is their tangent, so one correction finds
   !> equilibrium.
-  pure logical function is_exact(model, operator, mass_factor) result(exact)
-    type(model_t), intent(in) :: model
+  pure logical function is_exact(plate, operator, mass_factor) result(exact)
+    type(composite_plate_t), intent(in) :: plate
     type(tangent_operator_t), intent(in) :: operator
     !> Factor of mass in the tangent
     real(wp), intent(in) :: mass_factor
 
-    exact = model%setup%mesh%kinematics == kinematics_linear .and. .not. model%setup%has_variable_sections()
+    exact = plate%setup%mesh%kinematics == kinematics_linear .and. .not. plate%setup%has_variable_sections()
     if (exact) exact = abs(operator%mass_factor/mass_factor - 1) <= mass_precision
   end function is_exact
 
@@ -103,13 +103,13 @@ contains
     type(tangent_product_t), intent(inout) :: tangent
     real(wp), allocatable :: push(:, :)
 
-    associate (model => at%model, numbering => at%operator%numbering, contact => at%new%contact)
+    associate (model => at%model, numbering => at%operator%numbering, contact => at%new%impact%patch)
       allocate (push(5, size(contact%weights)), source=0.0_wp)
-      push(3, :) = contact%weights/model%mesh%multiplicity
+      push(3, :) = contact%weights/model%plate%mesh%multiplicity
       allocate (tangent%pattern(numbering%rows))
       call numbering%gather(push, tangent%pattern)
-      tangent%force_slope = coupling%slope(model%setup%impactor%indentation, at%old%indentation, &
-                                           at%new%contact_deflection(model))
+      tangent%force_slope = coupling%slope(model%plate%setup%impactor%indentation, at%old%impact%indentation, &
+                                           at%new%contact_deflection(model%plate))
     end associate
   end subroutine add_force_slope
 end module dynamic_tangents

@@ -52,7 +52,7 @@ contains
     real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
     call find_products(model, integrator, old, step, energy, new, products)
-    amplitudes = model%setup%pressure%amplitude([old%time, new%time])
+    amplitudes = model%plate%setup%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
     new%ledger%contact = old%ledger%contact - products%contact
@@ -61,27 +61,27 @@ contains
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
     new%ledger%algorithmic = old%ledger%algorithmic - gain
-    call new%plies%record(model, damage)
+    call new%plies%record(model%plate, damage)
     new%ledger%ply_damage = new%ledger%ply_damage + damage
-    fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    fracture = new%interfaces%cohesive%dissipation(model%plate, old%interfaces%cohesive)
     new%ledger%delamination = new%ledger%delamination + fracture
-    heat = new%interfaces%friction_heat(model, old%interfaces)
+    heat = new%interfaces%friction_heat(model%plate, old%interfaces)
     new%ledger%friction = new%ledger%friction + heat
     new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
     call new%plies%measure_lag(damage, products%strain - old%ledger%strain - products%mean_internal &
                                - products%cohesive, &
                          new%ledger%largest + new%ledger%residual)
-    if (model%map%layered) then
+    if (model%plate%map%layered) then
       ! Subtracts the fracture energy, which is recorded when ties are released.
-      call new%interfaces%ties%record(model, old%interfaces%ties, &
+      call new%interfaces%ties%record(model%plate, old%interfaces%ties, &
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
-    if (.not. model%setup%impactor%is_present) return
-    impactor = impactor_energy(model%setup%impactor, new%impactor)
+    if (.not. model%plate%setup%impactor%is_present) return
+    impactor = impactor_energy(model%plate%setup%impactor, new%impact%impactor)
     new%ledger%impactor = impactor
-    new%ledger%indentation = new%indentation%work
-    new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
+    new%ledger%indentation = new%impact%indentation%work
+    new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%impact%patch_mean - old%impact%patch_mean) &
       + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
   end subroutine record_step
 
@@ -96,12 +96,12 @@ contains
     real(wp) :: energy, lost, dissipated
 
     call trial%find_internal(model, now, energy)
-    call model%communicator%sum(energy)
-    energy = energy*model%mesh%multiplicity
+    call model%plate%communicator%sum(energy)
+    energy = energy*model%plate%mesh%multiplicity
     lost = trial%ledger%strain - energy
     dissipated = lost
     if (allocated(trial%plies%bands)) then
-      call trial%plies%record(model, dissipated)
+      call trial%plies%record(model%plate, dissipated)
       call trial%plies%bands%commit()
     end if
     trial%ledger%ply_damage = trial%ledger%ply_damage + dissipated
@@ -144,18 +144,18 @@ contains
     real(wp) :: sums(13)
 
     sums = 0
-    call multiply_fields(model%distribution%owned, integrator, step, old%motion, new%motion, sums(:7))
+    call multiply_fields(model%plate%distribution%owned, integrator, step, old%motion, new%motion, sums(:7))
     sums(8) = energy
-    if (allocated(model%pressure)) &
-      sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
+    if (allocated(model%loads%pressure)) &
+      sums(9) = model%plate%product(new%motion%displacement - old%motion%displacement, model%loads%pressure)
     if (model%has_point_stiffness) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
                                                                 new%motion%displacement - old%motion%displacement)
-    if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
-    if (model%setup%has_crack_bands()) &
-      sums(13) = stored_beyond_work(new%interfaces%cohesive, model, old%interfaces%cohesive, old%motion%displacement, &
-                                    new%motion%displacement)
-    call model%communicator%sum(sums)
-    sums = sums*model%mesh%multiplicity
+    if (size(model%loads%lines) > 0) sums(11:12) = line_products(model, old, new)
+    if (model%plate%setup%has_crack_bands()) &
+      sums(13) = stored_beyond_work(new%interfaces%cohesive, model%plate, old%interfaces%cohesive, &
+                                    old%motion%displacement, new%motion%displacement)
+    call model%plate%communicator%sum(sums)
+    sums = sums*model%plate%mesh%multiplicity
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &
                           jerk_new=sums(5), jerk_old=sums(6), jerk_change=sums(7), strain=sums(8), pressure=sums(9), &
                           contact=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
@@ -173,12 +173,12 @@ contains
     real(wp), allocatable :: before(:, :), after(:, :), holding(:, :), change(:, :)
 
     allocate (before, after, holding, mold=old%motion%displacement)
-    call model%line_forces(old%motion%displacement, old%load_factor, before, prescribed=.false.)
-    call model%line_forces(new%motion%displacement, new%load_factor, after, prescribed=.false.)
-    call model%line_forces(new%motion%displacement, new%load_factor, holding, prescribed=.true.)
+    call model%loads%line_forces(old%motion%displacement, old%load_factor, before, prescribed=.false.)
+    call model%loads%line_forces(new%motion%displacement, new%load_factor, after, prescribed=.false.)
+    call model%loads%line_forces(new%motion%displacement, new%load_factor, holding, prescribed=.true.)
     change = new%motion%displacement - old%motion%displacement
-    sums = [model%product(change, before + after)/2 + model%product(change, holding), &
-            model%product(change, after - before)]
+    sums = [model%plate%product(change, before + after)/2 + model%plate%product(change, holding), &
+            model%plate%product(change, after - before)]
   end function line_products
 
   !> Products of fields over this rank's points: v.Mv at the end; change of displacement times sum and change of

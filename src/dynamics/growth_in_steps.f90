@@ -40,16 +40,17 @@ contains
     real(wp) :: fracture
     logical :: grown
 
-    call model%profile%enter('fronts')
+    call model%plate%profile%enter('fronts')
     ties = now%interfaces%ties
     do
       free = trial%interfaces%contact%free
       fracture = trial%ledger%delamination
-      call grow_fronts(model, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, grown)
+      call grow_fronts(model%plate, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, &
+                       grown)
       ! The integrators cannot distinguish the energy dissipated by fracture from their own dissipation.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) exit
-      call ties%release(model, free, trial%interfaces%contact%free, &
+      call ties%release(model%plate, free, trial%interfaces%contact%free, &
                        trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
       problem%guess = trial%motion%displacement
       start = now
@@ -60,19 +61,19 @@ contains
       start%ledger%algorithmic = start%ledger%algorithmic - fracture
       call solve_step(problem, model, equilibrium, operator, start, trial, converged, error)
       if (.not. converged .or. allocated(error)) exit
-      opened = trial%interfaces%ties%first_opening(model, free, trial%interfaces%contact%free, &
+      opened = trial%interfaces%ties%first_opening(model%plate, free, trial%interfaces%contact%free, &
                                                    trial%motion%displacement)
       trial%interfaces%ties%set_free = trial%interfaces%ties%set_free + opened
       ties%set_free = ties%set_free + opened
     end do
-    call model%profile%leave()
+    call model%plate%profile%leave()
   end subroutine grow_in_step
 
   !> True if all delaminations grow in the next step, none while time is held constant.
   pure logical function grows_by_steps(model)
     type(model_t), intent(in) :: model
 
-    grows_by_steps = model%map%layered
-    if (grows_by_steps) grows_by_steps = all(model%setup%delaminations%growth /= growth_equilibrium)
+    grows_by_steps = model%plate%map%layered
+    if (grows_by_steps) grows_by_steps = all(model%plate%setup%delaminations%growth /= growth_equilibrium)
   end function grows_by_steps
 end module growth_in_steps

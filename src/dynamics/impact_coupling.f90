@@ -42,8 +42,8 @@ module impact_coupling
 contains
 
   !> Coupling in a step.
-  pure function begin_coupling(model, integrator, old, step) result(coupling)
-    class(composite_plate_t), intent(in) :: model
+  pure function begin_coupling(plate, integrator, old, step) result(coupling)
+    type(composite_plate_t), intent(in) :: plate
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -51,16 +51,16 @@ contains
     real(wp), intent(in) :: step
     type(impact_coupling_t) :: coupling
 
-    call predict(model%setup%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
-    coupling%mean = takes_mean_force(model%setup%impactor)
-    coupling%unknown = old%force
-    coupling%force_end = old%force
-    coupling%start_force = old%force
+    call predict(plate%setup%impactor, old%impact%impactor, step, coupling%free_displacement, coupling%compliance)
+    coupling%mean = takes_mean_force(plate%setup%impactor)
+    coupling%unknown = old%impact%force
+    coupling%force_end = old%impact%force
+    coupling%start_force = old%impact%force
     coupling%alpha_f = integrator%alpha_f
     coupling%share = 1
     if (coupling%mean) return
     coupling%share = 1 - integrator%alpha_f
-    coupling%inherited = integrator%alpha_f*old%force
+    coupling%inherited = integrator%alpha_f*old%impact%force
   end function begin_coupling
 
   !> Force on the plate in its equation of motion.
@@ -95,11 +95,12 @@ contains
 
     associate (model => at%model, operator => at%operator, new => at%new)
       before = self%unknown
-      new%patch_mean = new%contact_deflection(model) + new%contact%mean(model%communicator, at%correction)
-      call self%find_force(model%setup%impactor%indentation, at%old%indentation, new%patch_mean, &
+      new%impact%patch_mean = new%contact_deflection(model%plate) + &
+                              new%impact%patch%mean(model%plate%communicator, at%correction)
+      call self%find_force(model%plate%setup%impactor%indentation, at%old%impact%indentation, new%impact%patch_mean, &
                            merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
       if (is_factored) at%correction = at%correction + (self%share*(self%unknown - before))*operator%response
-      new%force_iterations = new%force_iterations + iterations
+      new%iterations%force = new%iterations%force + iterations
     end associate
   end subroutine solve
 

@@ -7,6 +7,7 @@ module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
   use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use residual_norms, only: relative_residual, sums_of_squares
   use states, only: state_t
@@ -46,7 +47,7 @@ contains
     real(wp) :: energy
 
     energy = 0
-    if (model%setup%thermal%is_present) then
+    if (model%plate%setup%thermal%is_present) then
       call equilibrate(model, operator, .false., state, error)
       if (allocated(error)) return
       energy = energy_of(state)
@@ -70,7 +71,7 @@ contains
   pure logical function has_initial_motion(model)
     type(model_t), intent(in) :: model
 
-    has_initial_motion = model%setup%thermal%is_present .or. lines_precede(model)
+    has_initial_motion = model%plate%setup%thermal%is_present .or. lines_precede(model)
   end function has_initial_motion
 
   !> True: lines are displaced before a run in time.
@@ -78,7 +79,8 @@ contains
     type(model_t), intent(in) :: model
     integer :: i
 
-    lines_precede = model%setup%has_inertia() .and. any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
+    lines_precede = model%plate%setup%has_inertia() &
+                    .and. any([(model%loads%lines(i)%load%precedes(), i=1, size(model%loads%lines))])
   end function lines_precede
 
   !> Finds the equilibrium of a plate at rest. Collective.
@@ -102,41 +104,41 @@ contains
     before = state
     if (moved) call guess_motion(model, state)
     largest = 0
-    references(:, 2) = [square_of_forces(model), 0.0_wp]
+    references(:, 2) = [square_of_forces(model%plate), 0.0_wp]
     do iteration = 0, max_iterations
       call find_residual(model, moved, before, state, energy, residual)
       if (iteration == 0) references(:, 1) = sums_of_squares(operator%numbering, state%motion%internal)
-      if (relative_residual(model, operator, equilibrium_t(tolerance=tolerance), residual, references, &
+      if (relative_residual(model%plate, operator, equilibrium_t(tolerance=tolerance), residual, references, &
                             state%motion%displacement, .true., largest) <= tolerance) exit
       if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (allocated(error)) return
       call operator%renew(model, state, 1.0_wp, mass_factor(model), error)
-      if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
+      if (.not. allocated(error)) call operator%correct(model%plate, residual, correction, error)
       if (allocated(error)) return
       operator%solves = operator%solves + 1
-      if (model%setup%has_crack_bands()) call extrapolate(model, residual, aitken, correction)
-      call state%interfaces%contact%constrain_correction(model, correction)
+      if (model%plate%setup%has_crack_bands()) call extrapolate(model%plate, residual, aitken, correction)
+      call state%interfaces%contact%constrain_correction(model%plate, correction)
       state%motion%displacement = state%motion%displacement + correction
     end do
-    call state%plies%record(model, damage)
+    call state%plies%record(model%plate, damage)
     if (allocated(state%plies%bands)) then
       call state%plies%bands%commit()
-      call state%plies%total_dissipation(model)
+      call state%plies%total_dissipation(model%plate)
       damage = damage + state%plies%permanent_shear - before%plies%permanent_shear
     end if
-    call model%communicator%sum(energy)
-    state%ledger%strain = energy*model%mesh%multiplicity
+    call model%plate%communicator%sum(energy)
+    state%ledger%strain = energy*model%plate%mesh%multiplicity
     state%ledger%ply_damage = state%ledger%ply_damage + damage
     state%ledger%delamination = state%ledger%delamination &
-                                + state%interfaces%cohesive%dissipation(model, before%interfaces%cohesive)
-    state%deflection = model%deflection(state%motion%displacement)
+                                + state%interfaces%cohesive%dissipation(model%plate, before%interfaces%cohesive)
+    state%impact%deflection = model%plate%deflection(state%motion%displacement)
     ! The impactor starts at first contact with the deflected plate.
-    if (model%setup%impactor%is_present) &
-      state%contact%offset = -state%contact%mean(model%communicator, state%motion%displacement)
-    if (allocated(model%nose)) &
-      state%contact%touched_at = model%nose%first_contact(model%communicator, state%motion%displacement(3, :))
-    state%patch_mean = state%contact_deflection(model)
+    if (model%plate%setup%impactor%is_present) &
+      state%impact%patch%offset = -state%impact%patch%mean(model%plate%communicator, state%motion%displacement)
+    if (allocated(model%nose)) state%impact%patch%touched_at = model%nose%first_contact( &
+      model%plate%communicator, state%motion%displacement(3, :))
+    state%impact%patch_mean = state%contact_deflection(model%plate)
     operator%ready = .false.
   end subroutine equilibrate
 
@@ -155,15 +157,15 @@ contains
       call prescribe_lines(model, state%interfaces, 0.0_wp, line_displacement, displacement)
       if (.not. allocated(cohesive%cohesive)) return
       change = displacement - change
-      do i = model%distribution%owned, 1, -1
+      do i = model%plate%distribution%owned, 1, -1
         if (.not. cohesive%cohesive(i) .or. cohesive%points(i)%damage >= 1) cycle
         displacement(1:3, i) = displacement(1:3, i) - change(1:3, i)
-        associate (above => model%map%above(i))
+        associate (above => model%plate%map%above(i))
           change(1:3, above) = change(1:3, above) + change(1:3, i)
           displacement(1:3, above) = displacement(1:3, above) + change(1:3, i)
         end associate
       end do
-      call model%halo%update(displacement)
+      call model%plate%halo%update(displacement)
     end associate
   end subroutine guess_motion
 
@@ -186,10 +188,10 @@ contains
     residual = -state%motion%internal
     if (moved) then
       allocate (lines, mold=residual)
-      call model%line_forces(state%motion%displacement, 0.0_wp, lines, prescribed=.true.)
+      call model%loads%line_forces(state%motion%displacement, 0.0_wp, lines, prescribed=.true.)
       residual = residual + lines
     else
-      call model%add_holding_lines(state%motion%displacement, residual)
+      call model%loads%add_holding_lines(state%motion%displacement, residual)
     end if
     call state%interfaces%add_to_residual(model, state%motion%displacement, residual)
   end subroutine find_residual
@@ -204,8 +206,8 @@ contains
   !> that the tangent stiffness is a ninth of the secant one. It needs no bound: it converges wherever A is positive
   !> definite (M. Raydan, IMA J. Numer. Anal. 13 (1993) 321-326). Elsewhere a negative factor is replaced by 1, and only
   !> the residual ends the iteration. Collective.
-  subroutine extrapolate(model, residual, aitken, correction)
-    type(model_t), intent(in) :: model
+  subroutine extrapolate(plate, residual, aitken, correction)
+    type(composite_plate_t), intent(in) :: plate
     !> Residual, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> The correction before; receives this one
@@ -215,9 +217,9 @@ contains
     real(wp) :: works(2), change, factor
 
     works = 0
-    if (allocated(aitken%correction)) works(1) = model%product(aitken%correction, residual)
-    works(2) = model%product(correction, residual)
-    call model%communicator%sum(works)
+    if (allocated(aitken%correction)) works(1) = plate%product(aitken%correction, residual)
+    works(2) = plate%product(correction, residual)
+    call plate%communicator%sum(works)
     change = aitken%work - 2*works(1) + works(2)
     factor = 1
     if (allocated(aitken%correction) .and. change > 0) factor = aitken%factor*(aitken%work - works(1))/change
@@ -243,12 +245,13 @@ contains
 
     allocate (loads, mold=state%motion%displacement)
     ! Prescribed lines are already in equilibrium with the plate; their springs in the operator hold them.
-    call model%line_forces(state%motion%displacement, 0.0_wp, loads, prescribed=.false.)
-    if (allocated(model%pressure)) loads = loads + model%setup%pressure%amplitude(0.0_wp)*model%pressure
+    call model%loads%line_forces(state%motion%displacement, 0.0_wp, loads, prescribed=.false.)
+    if (allocated(model%loads%pressure)) loads = loads + model%plate%setup%pressure%amplitude(0.0_wp) &
+                                                 *model%loads%pressure
     associate (motion => state%motion)
       call operator%renew(model, state, 0.0_wp, mass_factor, error)
       if (allocated(error)) return
-      call operator%correct(model, loads, motion%acceleration, error)
+      call operator%correct(model%plate, loads, motion%acceleration, error)
       operator%solves = operator%solves + 1
       motion%acceleration = mass_factor*motion%acceleration
       call model%inertia(motion%acceleration, motion%inertia)
@@ -262,14 +265,14 @@ contains
 
   !> Sum over this rank's elements of the squared nodal forces that suppress the stress-free strains, before assembly:
   !> after assembly those at unconstrained unknowns may vanish.
-  pure real(wp) function square_of_forces(model) result(total)
-    type(model_t), intent(in) :: model
+  pure real(wp) function square_of_forces(plate) result(total)
+    type(composite_plate_t), intent(in) :: plate
     integer :: b
 
     total = 0
-    if (.not. allocated(model%free)) return
-    do b = 1, model%elements%batches
-      total = total + sum(sum(model%elements%weight(:, :, b), 2)*sum(model%free(:, 1:3, b)**2, 2))
+    if (.not. allocated(plate%layup%free)) return
+    do b = 1, plate%elements%batches
+      total = total + sum(sum(plate%elements%weight(:, :, b), 2)*sum(plate%layup%free(:, 1:3, b)**2, 2))
     end do
   end function square_of_forces
 
@@ -279,6 +282,6 @@ contains
     type(model_t), intent(in) :: model
 
     factor = 0
-    if (model%setup%has_inertia()) factor = model%negligible_stiffness()/model%section%mass(1)
+    if (model%plate%setup%has_inertia()) factor = model%plate%negligible_stiffness()/model%plate%layup%section%mass(1)
   end function mass_factor
 end module initial_equilibrium

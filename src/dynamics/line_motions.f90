@@ -23,7 +23,7 @@ contains
     type(model_t), intent(in) :: model
     integer :: i
 
-    has_moved_lines = any([(model%lines(i)%load%prescribed, i=1, size(model%lines))])
+    has_moved_lines = any([(model%loads%lines(i)%load%prescribed, i=1, size(model%loads%lines))])
   end function has_moved_lines
 
   !> Sets displacement, velocity or acceleration of the lines at a time. Jumps and constrained unknowns are unchanged.
@@ -43,20 +43,20 @@ contains
 
     allocate (change, source=field)
     ! Rotations and upper layers first, as displacements of lower layers contain them.
-    do place = 0, 1 + maxval([0, model%lines%load%layer])
-      do i = 1, size(model%lines)
-        associate (line => model%lines(i))
+    do place = 0, 1 + maxval([0, model%loads%lines%load%layer])
+      do i = 1, size(model%loads%lines)
+        associate (line => model%loads%lines(i))
           if (.not. line%load%prescribed) cycle
           if (place /= merge(1 + line%load%layer, 0, line%load%component <= 3)) cycle
-          values = line%load%motion_at(time, model%setup%loading%ramp_time)
+          values = line%load%motion_at(time, model%plate%setup%loading%ramp_time)
           call line%move_to(values(derivative), change)
         end associate
       end do
     end do
     change = change - field
-    where (model%fixed(:, model%distribution%points)) change = 0
-    call interfaces%contact%constrain_correction(model, change)
-    call model%halo%update(change)
+    where (model%plate%constraints%fixed(:, model%plate%distribution%points)) change = 0
+    call interfaces%contact%constrain_correction(model%plate, change)
+    call model%plate%halo%update(change)
     field = field + change
   end subroutine prescribe_lines
 
@@ -79,9 +79,9 @@ contains
     call prescribe_lines(model, interfaces, time, line_velocity, motion%velocity)
     change = motion%velocity - change
     call model%inertia(change, momentum)
-    work = model%product(change, motion%momentum) + model%product(change, momentum)/2
-    call model%communicator%sum(work)
-    work = work*model%mesh%multiplicity
+    work = model%plate%product(change, motion%momentum) + model%plate%product(change, momentum)/2
+    call model%plate%communicator%sum(work)
+    work = work*model%plate%mesh%multiplicity
     motion%momentum = motion%momentum + momentum
     call prescribe_lines(model, interfaces, time, line_acceleration, motion%acceleration)
     call model%inertia(motion%acceleration, motion%inertia)

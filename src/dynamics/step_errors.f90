@@ -7,6 +7,7 @@ module step_errors
   use archives, only: archive_t
   use field_mappings, only: area_field
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use newmark_integrators, only: plate_integrator_t
   use states, only: state_t
@@ -51,20 +52,20 @@ contains
     real(wp), allocatable :: unit(:, :), mass(:, :)
     real(wp) :: total
 
-    associate (owned => model%distribution%owned)
+    associate (owned => model%plate%distribution%owned)
       allocate (self%deflection(owned, past), source=0.0_wp)
-      allocate (unit, mass, source=spread(spread(0.0_wp, 1, 5), 2, size(model%distribution%points)))
-      where (model%zone == 0) unit(3, :) = 1
+      allocate (unit, mass, source=spread(spread(0.0_wp, 1, 5), 2, size(model%plate%distribution%points)))
+      where (model%plate%zone == 0) unit(3, :) = 1
       call model%inertia(unit, mass)
       self%share = mass(3, :owned)*unit(3, :owned)
     end associate
     total = sum(self%share)
-    call model%communicator%sum(total)
+    call model%plate%communicator%sum(total)
     self%share = self%share/total
-    if (.not. model%setup%impactor%is_present) return
+    if (.not. model%plate%setup%impactor%is_present) return
     self%known = past
     self%time = -step*[1, 2]
-    self%indentation = model%setup%impactor%velocity*self%time
+    self%indentation = model%plate%setup%impactor%velocity*self%time
   end subroutine start
 
   !> Weights of the last four states, latest first, in the error of displacements over the last step. For
@@ -95,10 +96,10 @@ contains
 
   !> Error of a trial step: the larger of the error of the contact force relative to the largest force and that of the
   !> deflection relative to the largest deflection. 0 for fewer than four states. Collective.
-  subroutine estimate(self, model, integrator, expected, now, trial, error)
+  subroutine estimate(self, plate, integrator, expected, now, trial, error)
     !> The estimate; updates the largest force and deflection
     class(step_error_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(plate_integrator_t), intent(in) :: integrator
     !> Expected response of the run
     type(expected_response_t), intent(in) :: expected
@@ -107,7 +108,7 @@ contains
     !> State at its end
     type(state_t), intent(in) :: trial
     real(wp), intent(out) :: error
-    real(wp) :: weights(past + 2), square, force, deflection
+    real(wp) :: weights(past + 2), square, struck, force, deflection
 
     error = 0
     if (self%known < past) return
@@ -115,23 +116,24 @@ contains
     square = sum(self%share*(weights(1)*trial%motion%displacement(3, :size(self%share)) &
                              + weights(2)*now%motion%displacement(3, :size(self%share)) &
                              + weights(3)*self%deflection(:, 1) + weights(4)*self%deflection(:, 2))**2)
-    call model%communicator%sum(square)
-    deflection = max(expected%deflection, self%largest, abs(trial%deflection))
-    if (deflection > 0) error = max(sqrt(square), abs(dot_product(weights, [trial%deflection, now%deflection, &
-                                                                            self%struck])))/deflection
-    if (.not. model%setup%impactor%is_present .or. self%impact_is_over(expected, trial)) return
-    force = max(expected%force, self%force, trial%force)
-    if (force > 0) error = max(error, max(self%stiffness, stiffness_of(model, trial))/force* &
-                               abs(dot_product(weights, [trial%indentation%alpha, now%indentation%alpha, &
+    call plate%communicator%sum(square)
+    deflection = max(expected%deflection, self%largest, abs(trial%impact%deflection))
+    struck = dot_product(weights, [trial%impact%deflection, now%impact%deflection, self%struck])
+    if (deflection > 0) error = max(sqrt(square), abs(struck))/deflection
+    if (.not. plate%setup%impactor%is_present .or. self%impact_is_over(expected, trial)) return
+    force = max(expected%force, self%force, trial%impact%force)
+    if (force > 0) error = max(error, max(self%stiffness, stiffness_of(plate, trial))/force* &
+                               abs(dot_product(weights, [trial%impact%indentation%alpha, now%impact%indentation%alpha, &
                                                          self%indentation])))
   end subroutine estimate
 
   !> Stiffness of the contact at a state.
-  pure real(wp) function stiffness_of(model, state) result(stiffness)
-    type(model_t), intent(in) :: model
+  pure real(wp) function stiffness_of(plate, state) result(stiffness)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: state
 
-    stiffness = indentation_stiffness(model%setup%impactor%indentation, state%indentation, state%indentation%alpha)
+    stiffness = indentation_stiffness(plate%setup%impactor%indentation, state%impact%indentation, &
+                                      state%impact%indentation%alpha)
   end function stiffness_of
 
   !> True: the impactor has left the plate and moves away from it, and no other contact is expected.
@@ -141,7 +143,7 @@ contains
     type(expected_response_t), intent(in) :: expected
     type(state_t), intent(in) :: state
 
-    over = self%force > 0 .and. .not. state%force > 0 .and. state%impactor%velocity < 0 .and. &
+    over = self%force > 0 .and. .not. state%impact%force > 0 .and. state%impact%impactor%velocity < 0 .and. &
            state%time > expected%last_contact
   end function impact_is_over
 
@@ -156,14 +158,14 @@ contains
 
     self%known = min(self%known + 1, past)
     self%time = [now%time, self%time(1)]
-    self%indentation = [now%indentation%alpha, self%indentation(1)]
-    self%struck = [now%deflection, self%struck(1)]
+    self%indentation = [now%impact%indentation%alpha, self%indentation(1)]
+    self%struck = [now%impact%deflection, self%struck(1)]
     self%deflection(:, 2) = self%deflection(:, 1)
     self%deflection(:, 1) = now%motion%displacement(3, :size(self%share))
-    self%largest = max(self%largest, abs(next%deflection))
-    if (.not. model%setup%impactor%is_present) return
-    self%force = max(self%force, next%force)
-    self%stiffness = max(self%stiffness, stiffness_of(model, next))
+    self%largest = max(self%largest, abs(next%impact%deflection))
+    if (.not. model%plate%setup%impactor%is_present) return
+    self%force = max(self%force, next%impact%force)
+    self%stiffness = max(self%stiffness, stiffness_of(model%plate, next))
   end subroutine record
 
   !> Discards the states before a sudden change: failed plies or grown fronts change the forces at the end of a step
@@ -176,10 +178,10 @@ contains
   end subroutine reset
 
   !> Saves or loads the stored states.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(step_error_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
     call archive%item('step_error/known', self%known)
     call archive%item('step_error/time_1', self%time(1))
@@ -191,19 +193,18 @@ contains
     call archive%item('step_error/force', self%force)
     call archive%item('step_error/stiffness', self%stiffness)
     call archive%item('step_error/largest', self%largest)
-    call visit_deflections(self, archive, model)
+    call visit_deflections(self, archive, plate)
   end subroutine visit
 
   !> Saves or loads the deflections.
-  subroutine visit_deflections(self, archive, model)
+  subroutine visit_deflections(self, archive, plate)
     class(step_error_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: field(:, :)
 
     field = transpose(self%deflection)
-    call archive%field('step_error/deflection', model%distribution%points(:model%distribution%owned), &
-                       model%mesh%points(), field, area_field)
+    call plate%visit_points(archive, 'step_error/deflection', field, area_field)
     self%deflection = transpose(field)
   end subroutine visit_deflections
 end module step_errors

@@ -13,6 +13,7 @@ module central_difference_energies
   use interface_stacks, only: last_layer
   use kinds, only: wp
   use mathematical_constants, only: pi
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use rank_totals, only: total_of, totals_of
   use short_numbers, only: short_text
@@ -45,10 +46,10 @@ contains
     type(exact_sum_t) :: sums(8)
     real(wp) :: totals(8)
 
-    call add_kinetic(method, model, now, 1.0_wp, sums(1), sums(2))
+    call add_kinetic(method, model%plate, now, 1.0_wp, sums(1), sums(2))
     call sums(3)%add(method%strain)
     call add_stored(method, model, now, sums(3))
-    associate (owned => model%distribution%owned, lost => method%stacks%history%lost)
+    associate (owned => model%plate%distribution%owned, lost => method%stacks%history%lost)
       if (allocated(now%interfaces%cohesive%points)) then
         associate (points => now%interfaces%cohesive%points(:owned), area => method%stacks%area(:owned))
           call sums(4)%add(area*points%dissipated)
@@ -59,7 +60,7 @@ contains
       call sums(7)%add(lost(2, :owned) + method%rigs%step_loss(:owned))
       call sums(8)%add(method%lines%work(:owned))
     end associate
-    totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
+    totals = totals_of(model%plate%communicator, sums)*model%plate%mesh%multiplicity
     associate (ledger => now%ledger)
       ledger%kinetic = totals(1)
       ledger%scaled = totals(2)
@@ -70,47 +71,48 @@ contains
       ledger%algorithmic = totals(7) + method%impact%loss
       ledger%external_work = method%initial_work + method%impact%work + totals(8)
       if (allocated(now%plies%bands)) then
-        call now%plies%total_dissipation(model)
+        call now%plies%total_dissipation(model%plate)
         ledger%ply_damage = sum(now%plies%dissipated) + now%plies%permanent_shear
       end if
-      if (model%setup%impactor%is_present) then
-        ledger%indentation = now%indentation%work
-        if (.not. model%setup%impactor%travel > 0) ledger%impactor = method%impact%energy(model, method%steps%now, now)
+      if (model%plate%setup%impactor%is_present) then
+        ledger%indentation = now%impact%indentation%work
+        if (.not. model%plate%setup%impactor%travel > 0) ledger%impactor = method%impact%energy(model, &
+                                                                                                method%steps%now, now)
       end if
       call ledger%note_largest()
     end associate
   end subroutine record_energies
 
   !> Kinetic energy of the plate at the end of the last step. Collective.
-  real(wp) function kinetic_energy(method, model, now, kept) result(energy)
+  real(wp) function kinetic_energy(method, plate, now, kept) result(energy)
     !> The method
     type(central_difference_t), intent(in) :: method
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
     type(exact_sum_t) :: kinetic, scaled
 
-    call add_kinetic(method, model, now, kept, kinetic, scaled)
-    energy = total_of(model%communicator, kinetic)*model%mesh%multiplicity
+    call add_kinetic(method, plate, now, kept, kinetic, scaled)
+    energy = total_of(plate%communicator, kinetic)*plate%mesh%multiplicity
   end function kinetic_energy
 
   !> Adds the kinetic energy of this rank's points, and the part of it that belongs to scaled inertia.
-  subroutine add_kinetic(method, model, now, kept, kinetic, scaled)
+  subroutine add_kinetic(method, plate, now, kept, kinetic, scaled)
     !> The method
     type(central_difference_t), intent(in) :: method
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
     !> Total kinetic energy, and, with scaled inertia, that of in-plane motion and rotation
     type(exact_sum_t), intent(inout) :: kinetic, scaled
     real(wp), allocatable :: layer(:, :)
-    real(wp), dimension(model%distribution%owned) :: plane, total
+    real(wp), dimension(plate%distribution%owned) :: plane, total
     integer :: i
 
-    layer = model%motion_of(now%motion%velocity)
-    do i = 1, model%distribution%owned
+    layer = plate%motion_of(now%motion%velocity)
+    do i = 1, plate%distribution%owned
       associate (m => method%inertia%mass(:, i), v => layer(:, i), change => method%stacks%history%change(:, i), &
                  lambda => method%stacks%history%forces(:, i), force => method%force(:, i))
         plane(i) = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
@@ -141,19 +143,19 @@ contains
     type(state_t), intent(in) :: now
     !> The energy
     type(exact_sum_t), intent(inout) :: stored
-    real(wp) :: energies(model%distribution%owned)
+    real(wp) :: energies(model%plate%distribution%owned)
     integer :: i
 
     energies = 0
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
-      do i = 1, model%distribution%owned
+      do i = 1, model%plate%distribution%owned
         if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
         if (model%rig%elastic) &
-          call stored%add(-model%rig%clamp_preload(i)*sum(u(3, i:last_layer(model%map%above, i))))
+          call stored%add(-model%rig%clamp_preload(i)*sum(u(3, i:last_layer(model%plate%map%above, i))))
         if (.not. allocated(cohesive%cohesive)) cycle
-        if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
+        if (.not. (model%plate%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0 .or. cohesive%by_energy(i)) then
-          associate (surfaces => cohesive%surfaces_of(model, i))
+          associate (surfaces => cohesive%surfaces_of(model%plate, i))
             energies(i) = method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i))
           end associate
         else
@@ -168,10 +170,10 @@ contains
 
   !> Reduces the velocities at the start of a step. The changes of coordinates in the last step, half of which enter the
   !> kinetic energy with the forces (central_difference_energies), are reduced by the same factor there. Collective.
-  subroutine damp_motion(method, model, now, duration, kept)
+  subroutine damp_motion(method, plate, now, duration, kept)
     !> Central differences, after a step
     type(central_difference_t), intent(inout) :: method
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The state; its ledger receives the energy
     type(state_t), intent(inout) :: now
     !> Duration of the damping; motions with a longer period are damped less
@@ -183,17 +185,17 @@ contains
     kept = 1
     if (.not. method%steps%now > 0) return
     kept = exp(2*log(final_ratio)*method%steps%now/duration)
-    before = kinetic_energy(method, model, now, 1.0_wp)
+    before = kinetic_energy(method, plate, now, 1.0_wp)
     now%motion%velocity = kept*now%motion%velocity
     call method%stacks%history%damp(kept)
     method%rigs%approach = kept*method%rigs%approach
     method%lines%dofs%change = kept*method%lines%dofs%change
-    now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now, kept)
+    now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, plate, now, kept)
   end subroutine damp_motion
 
   !> Sets an error if the energy error shows unstable growth. Collective.
-  subroutine check_stability(model, now, error)
-    type(model_t), intent(in) :: model
+  subroutine check_stability(plate, now, error)
+    type(composite_plate_t), intent(in) :: plate
     !> The state, with its ledger
     type(state_t), intent(in) :: now
     !> Set if the motion is unstable; the same on every rank
@@ -208,13 +210,13 @@ contains
     if (abs(created) <= huge(created)) &
       amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
     call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
-              ': '//amount//'; the largest velocity is '//fastest_point(model, now%motion%velocity)// &
+              ': '//amount//'; the largest velocity is '//fastest_point(plate, now%motion%velocity)// &
               '. Take a smaller &time step_factor.')
   end subroutine check_stability
 
   !> Point of the largest transverse velocity. Collective.
-  function fastest_point(model, velocity) result(place)
-    type(model_t), intent(in) :: model
+  function fastest_point(plate, velocity) result(place)
+    type(composite_plate_t), intent(in) :: plate
     !> Rates of the unknowns, (5, points)
     real(wp), intent(in) :: velocity(:, :)
     !> Coordinates and layer
@@ -223,21 +225,21 @@ contains
     real(wp) :: largest
     integer :: i, point
 
-    associate (partition => model%distribution)
+    associate (partition => plate%distribution)
       rates = abs(velocity(3, :partition%owned))
       where (.not. rates <= huge(rates)) rates = huge(rates)
       largest = maxval(rates)
-      call model%communicator%maximum(largest)
+      call plate%communicator%maximum(largest)
       point = huge(point)
       do i = 1, partition%owned
         if (rates(i) >= largest) point = min(point, partition%points(i))
       end do
     end associate
-    call model%communicator%minimum(point)
-    associate (node => model%mesh%point_node(point))
-      place = 'at x = '//short_text(model%mesh%node_coordinates(1, node))//', y = '// &
-              short_text(model%mesh%node_coordinates(2, node))//', layer '// &
-              to_text(point - model%mesh%first_point(node) + 1)
+    call plate%communicator%minimum(point)
+    associate (node => plate%mesh%point_node(point))
+      place = 'at x = '//short_text(plate%mesh%node_coordinates(1, node))//', y = '// &
+              short_text(plate%mesh%node_coordinates(2, node))//', layer '// &
+              to_text(point - plate%mesh%first_point(node) + 1)
     end associate
   end function fastest_point
 end module central_difference_energies

@@ -15,6 +15,7 @@ module central_differences
   use interface_stacks, only: create_interface_stacks
   use kinds, only: wp
   use line_steps, only: create_line_steps
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use nodal_inertia, only: create_nodal_inertia
   use element_batches, only: lanes
@@ -90,22 +91,24 @@ contains
     type(inertia_scaling_t) :: scaling
 
     self%parameters = parameters
-    scaling = create_inertia_scaling(model%setup, parameters%mass_scaling)
+    scaling = create_inertia_scaling(model%plate%setup, parameters%mass_scaling)
     self%inertia = create_nodal_inertia(model, scaling)
     call self%inertia%invert(0.0_wp)
-    call highest_element_frequency(model, largest_stiffness(now%plies), scaling, self%frequency, self%element, &
+    call highest_element_frequency(model%plate, largest_stiffness(now%plies), scaling, self%frequency, self%element, &
                                    self%of_elements)
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%rigs = create_rig_steps(model)
     self%lines = create_line_steps(model, self%inertia)
-    self%onsets = create_front_onsets(model)
+    self%onsets = create_front_onsets(model%plate)
     call separate_constrained_points(self)
-    self%impact = create_impactor_steps(model, now%impactor%velocity)
-    self%impact%patch%offset = merge(-now%contact%touched_at, now%contact%offset, allocated(model%nose))
-    call self%impact%patch%gather(model, self%inertia%inverse_of_images())
-    allocate (self%force(5, size(model%distribution%points)), self%motion(5, size(model%distribution%points)), &
-              self%field(5, model%borders%columns), self%strain(lanes, model%elements%batches), source=0.0_wp)
+    self%impact = create_impactor_steps(model, now%impact%impactor%velocity)
+    self%impact%patch%offset = merge(-now%impact%patch%touched_at, now%impact%patch%offset, allocated(model%nose))
+    call self%impact%patch%gather(model%plate, self%inertia%inverse_of_images())
+    allocate (self%force(5, size(model%plate%distribution%points)), &
+              self%motion(5, size(model%plate%distribution%points)), &
+              self%field(5, model%plate%borders%columns), self%strain(lanes, model%plate%elements%batches), &
+              source=0.0_wp)
     self%initial_work = now%ledger%external_work
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
@@ -125,21 +128,21 @@ contains
 
   !> Stable step of elements and contact times step_factor, theory (T6). The highest frequency with added springs is at
   !> most the root of the sum of the squares of the frequencies.
-  real(wp) function longest_step(self, model, now) result(step)
+  real(wp) function longest_step(self, plate, now) result(step)
     class(central_difference_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     real(wp) :: frequency, square
 
-    if (depends_on_slopes(model%elements, model%setup%mesh%kinematics) .and. &
+    if (depends_on_slopes(plate%elements, plate%setup%mesh%kinematics) .and. &
         modulo(now%step, steps_between_frequencies) == 0) then
-      frequency = stiffened_frequency(model, largest_stiffness(now%plies), self%of_elements, self%motion)
+      frequency = stiffened_frequency(plate, largest_stiffness(now%plies), self%of_elements, self%motion)
       if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
         self%stiffened = stiffened_reserve*frequency
     end if
     square = self%stiffened**2
-    if (model%setup%impactor%is_present) &
-      square = square + self%impact%contact_frequency_square(model, now%indentation)
+    if (plate%setup%impactor%is_present) &
+      square = square + self%impact%contact_frequency_square(plate, now%impact%indentation)
     step = self%parameters%stable_step(sqrt(square))
   end function longest_step
 
@@ -156,32 +159,32 @@ contains
     real(wp) :: step, longest, load_factors(2)
 
     step = self%steps%now
-    longest = self%longest_step(model, now)
+    longest = self%longest_step(model%plate, now)
     if (.not. (step <= longest .and. step > lengthening_ratio*longest)) &
-      step = commensurate_step(model%setup%loading%ramp_time, longest)
+      step = commensurate_step(model%plate%setup%loading%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now, kept=kept)
-    call prepare(self, model)
-    load_factors = [now%load_factor, model%setup%load_factor_at(now%time + step)]
-    call self%lines%find_rates(model, self%steps, load_factors(2), model%setup%offset_left(now%time + step), &
+    call prepare(self, model%plate)
+    load_factors = [now%load_factor, model%plate%setup%load_factor_at(now%time + step)]
+    call self%lines%find_rates(model, self%steps, load_factors(2), model%plate%setup%offset_left(now%time + step), &
                                self%motion)
     associate (u => now%motion%displacement, v => now%motion%velocity)
-      call model%profile%enter('nodes')
+      call model%plate%profile%enter('nodes')
       if (allocated(self%inertia%springs)) then
         call self%inertia%add_spring_forces(step, u, v, self%force)
         rates = v(:, self%inertia%sprung)
       end if
-      call change_length(self, model, v, -1)
-      call move_single(self, model, u, v)
-      call move_stacks(self%nodal_steps_t, model, now%interfaces%cohesive, u, v)
+      call change_length(self, model%plate, v, -1)
+      call move_single(self, model%plate, u, v)
+      call move_stacks(self%nodal_steps_t, model%plate, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia, self%steps, rates, v)
-      call self%rigs%circles%constrain(model, self%steps, u(3, :), v(3, :))
+      call self%rigs%circles%constrain(model%plate, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
-      call change_length(self, model, v, 1)
-      call self%onsets%find(model, now%step, self%stacks, now%interfaces%cohesive, u)
-      call model%profile%leave()
-      call model%halo%update(u)
+      call change_length(self, model%plate, v, 1)
+      call self%onsets%find(model%plate, now%step, self%stacks, now%interfaces%cohesive, u)
+      call model%plate%profile%leave()
+      call model%plate%halo%update(u)
     end associate
     now%time = now%time + step
     if (abs(now%time - event) <= event_tolerance*step) now%time = event
@@ -196,9 +199,9 @@ contains
   !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the change is
   !> then the energy of the initial state, -h^2 F M^-1 F/8 at rest, and is recorded as external work, not as
   !> dissipation. Collective.
-  subroutine change_length(self, model, v, sign)
+  subroutine change_length(self, plate, v, sign)
     type(central_difference_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Rates of the unknowns before the step or after it, (5, points)
     real(wp), contiguous, intent(in) :: v(:, :)
     !> -1 before the step, 1 after it
@@ -206,33 +209,33 @@ contains
     real(wp), allocatable :: change(:)
 
     if (.not. abs(self%steps%now - self%steps%last) > 0) return
-    change = sign*(self%steps%now - self%steps%last)/4*sum(self%force*model%motion_of(v), 1)
+    change = sign*(self%steps%now - self%steps%last)/4*sum(self%force*plate%motion_of(v), 1)
     if (self%steps%last > 0) then
       self%rigs%step_loss = self%rigs%step_loss + change
     else
-      self%initial_work = self%initial_work - model%mesh%multiplicity* &
-                          total_of(model%communicator, change(:model%distribution%owned))
+      self%initial_work = self%initial_work - plate%mesh%multiplicity* &
+                          total_of(plate%communicator, change(:plate%distribution%owned))
     end if
   end subroutine change_length
 
   !> Computes the inverse inertia for the step length, with which batches of stacks are formed anew.
-  subroutine prepare(self, model)
+  subroutine prepare(self, plate)
     type(central_difference_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
     if (abs(self%prepared%now - self%steps%now) <= 0 .and. abs(self%prepared%last - self%steps%last) <= 0) return
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
-    call self%rigs%circles%prepare(model, self%inertia%inverse(7, :))
-    call self%impact%patch%gather(model, self%inertia%inverse_of_images())
+    call self%rigs%circles%prepare(plate, self%inertia%inverse(7, :))
+    call self%impact%patch%gather(plate, self%inertia%inverse_of_images())
     if (allocated(self%batches)) deallocate (self%batches)
     self%prepared = self%steps
   end subroutine prepare
 
   !> Moves nodes with one layer.
-  subroutine move_single(self, model, u, v)
+  subroutine move_single(self, plate, u, v)
     type(central_difference_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
     real(wp) :: before(5)
@@ -261,16 +264,16 @@ contains
     !> The state; its plies soften
     type(state_t), intent(inout) :: now
 
-    call model%profile%enter('element forces')
+    call model%plate%profile%enter('element forces')
     call multiply(size(self%motion), 1.0_wp, now%motion%displacement, self%motion)
-    if (model%map%layered) call model%map%to_motion(self%motion)
+    if (model%plate%map%layered) call model%plate%map%to_motion(self%motion)
     self%field = 0
     call now%plies%note_step(self%steps%now)
-    call now%plies%add_layer_forces(model, self%motion, self%field, self%strain)
-    call model%borders%add(self%field)
+    call now%plies%add_layer_forces(model%plate, self%motion, self%field, self%strain)
+    call model%plate%borders%add(self%field)
     call multiply(size(self%force), -1.0_wp, self%field, self%force)
-    call model%profile%leave()
-    call self%impact%patch%add_force(model%mesh%multiplicity, now%force, self%force)
+    call model%plate%profile%leave()
+    call self%impact%patch%add_force(model%plate%mesh%multiplicity, now%impact%force, self%force)
     call add_clamp_forces(model, self%force)
     call self%inertia%fold(self%force)
   end subroutine find_forces
@@ -297,14 +300,14 @@ contains
     real(wp), allocatable :: loads(:, :), change(:, :)
     real(wp) :: amplitudes(2)
 
-    if (.not. (allocated(model%pressure) .or. any(.not. model%lines%load%prescribed))) return
+    if (.not. (allocated(model%loads%pressure) .or. any(.not. model%loads%lines%load%prescribed))) return
     allocate (loads(5, size(self%force, 2)), source=0.0_wp)
-    change = self%steps%now*model%motion_of(now%motion%velocity)
+    change = self%steps%now*model%plate%motion_of(now%motion%velocity)
     call self%lines%add_forces(model, load_factors, change, loads)
-    if (allocated(model%pressure)) then
-      amplitudes = model%setup%pressure%amplitude([now%time - self%steps%now, now%time])
-      loads = loads + amplitudes(2)*model%pressure
-      self%lines%work = self%lines%work + sum(amplitudes)/2*model%pressure(3, :)*change(3, :)
+    if (allocated(model%loads%pressure)) then
+      amplitudes = model%plate%setup%pressure%amplitude([now%time - self%steps%now, now%time])
+      loads = loads + amplitudes(2)*model%loads%pressure
+      self%lines%work = self%lines%work + sum(amplitudes)/2*model%loads%pressure(3, :)*change(3, :)
     end if
     call self%inertia%fold(loads)
     self%force = self%force + loads
@@ -318,10 +321,10 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: lost
 
-    lost = total_of(model%communicator, self%strain)
+    lost = total_of(model%plate%communicator, self%strain)
     call self%renew_forces(model, now)
-    lost = lost - total_of(model%communicator, self%strain)
-    now%ledger%ply_damage = now%ledger%ply_damage + lost*model%mesh%multiplicity
+    lost = lost - total_of(model%plate%communicator, self%strain)
+    now%ledger%ply_damage = now%ledger%ply_damage + lost*model%plate%mesh%multiplicity
   end subroutine record_failures
 
   !> Computes the forces again after failures of plies or insertion of layers, without work of the loads. Collective.
@@ -347,9 +350,9 @@ contains
     call self%stacks%find_damaged(now%interfaces%cohesive)
     if (allocated(self%batches)) deallocate (self%batches)
     call separate_constrained_points(self)
-    self%motion = model%motion_of(now%motion%displacement)
+    self%motion = model%plate%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
-    if (self%steps%now > 0) call prepare(self, model)
+    if (self%steps%now > 0) call prepare(self, model%plate)
   end subroutine resume
 
   !> Saves or loads.
@@ -363,13 +366,14 @@ contains
     call archive%item('explicit/initial_work', self%initial_work)
     call archive%item('explicit/frequency', self%stiffened)
     self%stiffened = max(self%stiffened, self%frequency)
-    associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
+    associate (owned => model%plate%distribution%points(:model%plate%distribution%owned), &
+               points => model%plate%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force, motion_field)
       call self%rigs%visit(archive, owned, points)
       call self%impact%visit(archive)
-      if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%initial%is_inherited) &
-        call self%lines%visit(archive, owned, points)
-      if (model%map%layered) call self%stacks%history%visit(archive, owned, points)
+      if (size(model%loads%lines) > 0 .or. allocated(model%loads%pressure) &
+          .or. model%plate%setup%initial%is_inherited) call self%lines%visit(archive, owned, points)
+      if (model%plate%map%layered) call self%stacks%history%visit(archive, owned, points)
     end associate
   end subroutine visit
 end module central_differences

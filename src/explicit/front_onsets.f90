@@ -8,7 +8,7 @@ module front_onsets
   use front_stencils, only: ahead, behind, create_front_stencils, far_behind, front_stencils_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: front_onsets_t, create_front_onsets
@@ -34,22 +34,22 @@ module front_onsets
 contains
 
   !> The search in a model. Collective.
-  function create_front_onsets(model) result(self)
-    type(model_t), intent(in) :: model
+  function create_front_onsets(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(front_onsets_t) :: self
 
     allocate (self%stencils%points(0))
-    if (.not. model%map%layered) return
-    if (.not. any(model%setup%delaminations%law == law_cohesive .and. &
-                  model%setup%delaminations%growth_control == growth_by_energy)) return
-    self%stencils = create_front_stencils(model)
-    allocate (self%values(7, model%mesh%points()), source=0.0_wp)
+    if (.not. plate%map%layered) return
+    if (.not. any(plate%setup%delaminations%law == law_cohesive .and. &
+                  plate%setup%delaminations%growth_control == growth_by_energy)) return
+    self%stencils = create_front_stencils(plate)
+    allocate (self%values(7, plate%mesh%points()), source=0.0_wp)
   end function create_front_onsets
 
   !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
-  subroutine find(self, model, step, stacks, cohesive, u)
+  subroutine find(self, plate, step, stacks, cohesive, u)
     class(front_onsets_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Number of the step
     integer, intent(in) :: step
     type(interface_stacks_t), intent(inout) :: stacks
@@ -61,21 +61,21 @@ contains
 
     if (.not. allocated(self%values) .or. modulo(step, steps_between_searches) > 0) return
     if (cohesive%is_held) return
-    call gather(self, model, stacks, cohesive, u)
+    call gather(self, plate, stacks, cohesive, u)
     do i = 1, size(self%stencils%points)
       associate (p => self%stencils%points(i))
         if (cohesive%points(p)%damage > 0 .or. cohesive%by_energy(p) .or. .not. stacks%may_separate(p)) cycle
-        if (model%setup%delaminations(model%zone(p))%growth_control /= growth_by_energy) cycle
-        call find_at(self, model, i, stacks, cohesive, u)
+        if (plate%setup%delaminations(plate%zone(p))%growth_control /= growth_by_energy) cycle
+        call find_at(self, plate, i, stacks, cohesive, u)
       end associate
     end do
   end subroutine find
 
   !> Collects the values of this rank's points and of those of other ranks in their stencils. Collective.
-  subroutine gather(self, model, stacks, cohesive, u)
+  subroutine gather(self, plate, stacks, cohesive, u)
     !> The search; receives the values
     type(front_onsets_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(interface_stacks_t), intent(in) :: stacks
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Unknowns, (5, points)
@@ -85,7 +85,7 @@ contains
     do i = 1, size(self%stencils%points)
       associate (p => self%stencils%points(i))
         if (.not. stacks%area(p) > 0) cycle
-        associate (value => self%values(:, model%distribution%points(p)))
+        associate (value => self%values(:, plate%distribution%points(p)))
           value(of_tractions) = stacks%history%forces(:, p)/stacks%area(p)
           value(of_jumps) = u(1:3, p)
           value(of_damage) = cohesive%points(p)%damage
@@ -96,9 +96,9 @@ contains
   end subroutine gather
 
   !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
-  pure subroutine find_at(self, model, i, stacks, cohesive, u)
+  pure subroutine find_at(self, plate, i, stacks, cohesive, u)
     type(front_onsets_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the point among those with an interface
     integer, intent(in) :: i
     type(interface_stacks_t), intent(inout) :: stacks
@@ -115,17 +115,17 @@ contains
       do d = 1, size(near, 2)
         if (any(near(behind:far_behind, d) == 0)) cycle
         if (.not. self%values(of_damage, abs(near(behind, d))) > 0) cycle
-        rate = rate_in(self, model%cohesive_laws(model%zone(p)), model%distribution%points(p), near(:, d), &
+        rate = rate_in(self, plate%interfaces%cohesive_laws(plate%zone(p)), plate%distribution%points(p), near(:, d), &
                        self%stencils%widths(:, d, i))
         if (.not. rate > largest) cycle
         largest = rate
         direction = d
       end do
       if (largest < onset_share) return
-      call reduce_law(model%cohesive_laws(model%zone(p)), u(1:3, p), stacks%history%forces(:, p)/stacks%area(p), &
-                      taken(self, of_jumps, near(behind, direction)), strength, opening)
+      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), stacks%history%forces(:, p) &
+                      /stacks%area(p), taken(self, of_jumps, near(behind, direction)), strength, opening)
       if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
-        call stacks%begin_softening(model, cohesive, p, [strength, opening], u)
+        call stacks%begin_softening(plate, cohesive, p, [strength, opening], u)
     end associate
   end subroutine find_at
 

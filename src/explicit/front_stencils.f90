@@ -3,7 +3,7 @@ module front_stencils
   use column_exchanges, only: column_exchange_t, new_column_exchange
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use nine_node_grids, only: cells_around, first_line, last_line
   implicit none
   private
@@ -29,28 +29,28 @@ module front_stencils
 
 contains
 
-  !> Stencils of a model. Collective.
-  function create_front_stencils(model) result(self)
-    type(model_t), intent(in) :: model
+  !> Stencils of a plate. Collective.
+  function create_front_stencils(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(front_stencils_t) :: self
     integer, allocatable :: groups(:, :)
     logical, allocatable :: mine(:)
     integer :: i
 
-    associate (mesh => model%mesh, parts => model%distribution)
-      self%points = pack([(i, i=1, parts%owned)], model%zone(:parts%owned) > 0)
+    associate (mesh => plate%mesh, parts => plate%distribution)
+      self%points = pack([(i, i=1, parts%owned)], plate%zone(:parts%owned) > 0)
       allocate (self%near(3, 4, size(self%points)), self%widths(2, 4, size(self%points)))
       do i = 1, size(self%points)
         call find_stencil(mesh, parts%points(self%points(i)), self%near(:, :, i), self%widths(:, :, i))
       end do
-      if (model%communicator%size == 1) return
+      if (plate%communicator%size == 1) return
       allocate (groups(13, mesh%points()))
       allocate (mine(mesh%points()), source=.false.)
       mine(parts%points(:parts%owned)) = .true.
       do i = 1, mesh%points()
         groups(:, i) = group_of(mesh, i)
       end do
-      self%exchange = new_column_exchange(model%communicator, mine, groups)
+      self%exchange = new_column_exchange(plate%communicator, mine, groups)
     end associate
   end function create_front_stencils
 

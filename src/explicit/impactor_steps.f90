@@ -3,6 +3,7 @@
 module impactor_steps
   use archives, only: archive_t
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use smooth_starts, only: smooth_ramp
   use states, only: state_t
@@ -53,20 +54,20 @@ contains
   !> Square of the frequency of the contact spring between the impactor and the mass under the patch, with the largest
   !> stiffness so far times this factor, theory (T6). The contact with a nose adds the springs of its points, of which
   !> the stiffest on the lightest mass is a bound.
-  real(wp) function contact_frequency_square(self, model, indentation) result(square)
+  real(wp) function contact_frequency_square(self, plate, indentation) result(square)
     class(impactor_steps_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(indentation_t), intent(in) :: indentation
     real(wp) :: slope, compliance, inverse_mass
 
-    slope = self%patch%gain**2*indentation_stiffness(model%setup%impactor%indentation, indentation, indentation%alpha)
+    slope = self%patch%gain**2*indentation_stiffness(plate%setup%impactor%indentation, indentation, indentation%alpha)
     inverse_mass = 0
-    if (.not. model%setup%impactor%travel > 0) inverse_mass = 1/model%setup%impactor%mass
+    if (.not. plate%setup%impactor%travel > 0) inverse_mass = 1/plate%setup%impactor%mass
     associate (patch => self%patch, &
-               force => indentation_force(model%setup%impactor%indentation, indentation, indentation%alpha))
-      compliance = sum(patch%weights**2*patch%inverse)/model%mesh%multiplicity + inverse_mass
+               force => indentation_force(plate%setup%impactor%indentation, indentation, indentation%alpha))
+      compliance = sum(patch%weights**2*patch%inverse)/plate%mesh%multiplicity + inverse_mass
       if (any(patch%slopes > 0)) slope = slope + patch%gain*force/compliance* &
-        (maxval(patch%slopes*patch%inverse)/model%mesh%multiplicity + sum(patch%slopes)*inverse_mass)
+        (maxval(patch%slopes*patch%inverse)/plate%mesh%multiplicity + sum(patch%slopes)*inverse_mass)
     end associate
     if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
     square = self%contact_stiffness*compliance
@@ -80,13 +81,13 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: w(size(self%patch%local))
 
-    call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
-    call self%patch%touch(w, now%indentation%dent)
-    now%patch_mean = now%impactor%displacement - now%indentation%dent
+    call self%patch%find_deflections(model%plate, now%motion%displacement, w, now%impact%deflection)
+    call self%patch%touch(w, now%impact%indentation%dent)
+    now%impact%patch_mean = now%impact%impactor%displacement - now%impact%indentation%dent
     if (allocated(model%nose)) then
-      now%contact%touched_at = -self%patch%offset
+      now%impact%patch%touched_at = -self%patch%offset
     else
-      now%contact%offset = self%patch%offset
+      now%impact%patch%offset = self%patch%offset
     end if
   end subroutine place
 
@@ -100,53 +101,55 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: alpha, before, change, w(size(self%patch%local))
 
-    if (model%setup%impactor%is_present .and. now%time <= model%setup%loading%start) then
+    if (model%plate%setup%impactor%is_present .and. now%time <= model%plate%setup%loading%start) then
       call self%place(model, now)
       ! The velocity at the middle of a step, with the full one at its end.
-      self%velocity = now%impactor%velocity - steps%now/2*model%setup%impactor%gravity
+      self%velocity = now%impact%impactor%velocity - steps%now/2*model%plate%setup%impactor%gravity
       return
     end if
-    call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
-    if (.not. model%setup%impactor%is_present) then
+    call self%patch%find_deflections(model%plate, now%motion%displacement, w, now%impact%deflection)
+    if (.not. model%plate%setup%impactor%is_present) then
       call self%patch%find_indentation(w, 0.0_wp, alpha)
-      now%patch_mean = -alpha
+      now%impact%patch_mean = -alpha
       return
     end if
-    associate (impactor => now%impactor, parameters => model%setup%impactor)
-      before = now%force
+    associate (impactor => now%impact%impactor, parameters => model%plate%setup%impactor)
+      before = now%impact%force
       if (parameters%travel > 0) then
-        change = parameters%travel*smooth_ramp(now%time/model%setup%loading%ramp_time, &
-                                               parameters%rise/model%setup%loading%ramp_time, 0) - impactor%displacement
+        change = parameters%travel*smooth_ramp(now%time/model%plate%setup%loading%ramp_time, &
+                                               parameters%rise/model%plate%setup%loading%ramp_time, 0) &
+                                               - impactor%displacement
         self%velocity = change/steps%now
       else
-        call accelerate(self, model, steps, before)
+        call accelerate(self, model%plate, steps, before)
         change = steps%now*self%velocity
       end if
       impactor%displacement = impactor%displacement + change
       call self%patch%find_indentation(w, impactor%displacement, alpha)
-      now%patch_mean = impactor%displacement - alpha
-      now%force = self%patch%gain*indentation_force(model%setup%impactor%indentation, now%indentation, alpha)
-      call commit_indentation(model%setup%impactor%indentation, now%indentation, alpha)
-      impactor%force = now%force
+      now%impact%patch_mean = impactor%displacement - alpha
+      now%impact%force = self%patch%gain*indentation_force(model%plate%setup%impactor%indentation, &
+                                                           now%impact%indentation, alpha)
+      call commit_indentation(model%plate%setup%impactor%indentation, now%impact%indentation, alpha)
+      impactor%force = now%impact%force
       impactor%velocity = self%velocity
       if (parameters%travel > 0) then
-        self%work = self%work + (before + now%force)/2*change
+        self%work = self%work + (before + now%impact%force)/2*change
       else
-        impactor%velocity = impactor%velocity + steps%now/2*(parameters%gravity - now%force/parameters%mass)
+        impactor%velocity = impactor%velocity + steps%now/2*(parameters%gravity - now%impact%force/parameters%mass)
       end if
     end associate
   end subroutine move
 
   !> Velocity at the middle of the step, and the energy lost by a change of its length (`step_lengths`).
-  pure subroutine accelerate(self, model, steps, force)
+  pure subroutine accelerate(self, plate, steps, force)
     type(impactor_steps_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(step_lengths_t), intent(in) :: steps
     !> Contact force at the start of the step
     real(wp), intent(in) :: force
     real(wp) :: acceleration
 
-    associate (parameters => model%setup%impactor)
+    associate (parameters => plate%setup%impactor)
       acceleration = parameters%gravity - force/parameters%mass
       self%loss = self%loss + parameters%mass*acceleration**2*(steps%now - steps%last)/4*steps%mean()
       self%velocity = self%velocity + steps%mean()*acceleration
@@ -161,9 +164,9 @@ contains
     real(wp), intent(in) :: step
     type(state_t), intent(in) :: now
 
-    associate (parameters => model%setup%impactor)
+    associate (parameters => model%plate%setup%impactor)
       energy = parameters%mass*(self%velocity*(self%velocity + step*(parameters%gravity &
-        - now%force/parameters%mass))/2 - parameters%gravity*now%impactor%displacement)
+        - now%impact%force/parameters%mass))/2 - parameters%gravity*now%impact%impactor%displacement)
     end associate
   end function energy
 

@@ -12,7 +12,7 @@ module inertia_scaling
   use cell_lines, only: cell_line_t
   use element_batches, only: batch_of, first_element, lane_of
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use setups, only: setup_t
   use stacking, only: section_mass, stacked_plies
   use stiffened_elements, only: beam_mass
@@ -122,38 +122,38 @@ contains
 
   !> Scaled masses of the sections of a model: the factor times I0, I1, I2, and the added rotary inertia. The sum over
   !> layers is the mass of the joined layers, so that the insertion of layers does not change the kinetic energy.
-  function sections(self, model) result(masses)
+  function sections(self, plate) result(masses)
     class(inertia_scaling_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> I0, I1, I2, (lanes, 3, batches)
     real(wp), allocatable :: masses(:, :, :)
     real(wp) :: sides(2)
     integer :: i
 
-    masses = model%elements%mass
-    do i = 1, model%elements%elements
-      sides = sides_of(model, i)
+    masses = plate%elements%mass
+    do i = 1, plate%elements%elements
+      sides = sides_of(plate, i)
       associate (mass => masses(lane_of(i), :, batch_of(i)))
         mass = self%factor(sides)*mass
-        mass(3) = mass(3) + self%radius_square*model%elements%mass(lane_of(i), 1, batch_of(i))
+        mass(3) = mass(3) + self%radius_square*plate%elements%mass(lane_of(i), 1, batch_of(i))
       end associate
     end do
   end function sections
 
   !> Scaled masses of the beams of a model, by the factors of their elements.
-  function beams(self, model) result(masses)
+  function beams(self, plate) result(masses)
     class(inertia_scaling_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> I0, I1, I2, (3, beams)
     real(wp), allocatable :: masses(:, :)
     integer :: b, k
 
-    masses = beam_mass(model%elements)
-    if (.not. allocated(model%elements%beams)) return
-    do b = 1, model%elements%batches
-      do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-        associate (unscaled => model%elements%beams(k)%mass)
-          masses(:, k) = self%factor(sides_of(model, first_element(b) + model%elements%beams(k)%lane - 1))*unscaled
+    masses = beam_mass(plate%elements)
+    if (.not. allocated(plate%elements%beams)) return
+    do b = 1, plate%elements%batches
+      do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
+        associate (unscaled => plate%elements%beams(k)%mass)
+          masses(:, k) = self%factor(sides_of(plate, first_element(b) + plate%elements%beams(k)%lane - 1))*unscaled
           masses(3, k) = masses(3, k) + self%radius_square*unscaled(1)
         end associate
       end do
@@ -161,14 +161,14 @@ contains
   end function beams
 
   !> Sides of the cell of an element.
-  function sides_of(model, element) result(sides)
-    type(model_t), intent(in) :: model
+  function sides_of(plate, element) result(sides)
+    type(composite_plate_t), intent(in) :: plate
     !> Position among this rank's elements
     integer, intent(in) :: element
     !> Along x and y
     real(wp) :: sides(2)
 
-    sides = model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(element))))
+    sides = plate%mesh%cell_sides(plate%mesh%place_of(plate%mesh%element_cell(plate%distribution%elements(element))))
   end function sides_of
 
   !> Factor of in-plane and rotary inertia of an element.

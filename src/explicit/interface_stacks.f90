@@ -5,6 +5,7 @@ module interface_stacks
   use cohesive_laws, only: cohesive_law_t
   use field_mappings, only: vector_fields
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   implicit none
@@ -130,11 +131,11 @@ contains
     type(cohesive_interfaces_t), intent(in) :: cohesive
     type(nodal_inertia_t), intent(in) :: inertia
     type(interface_stacks_t) :: self
-    logical :: is_dependent(model%distribution%owned)
+    logical :: is_dependent(model%plate%distribution%owned)
     integer :: i, points
 
-    associate (above => model%map%above, owned => model%distribution%owned)
-      points = size(model%distribution%points)
+    associate (above => model%plate%map%above, owned => model%plate%distribution%owned)
+      points = size(model%plate%distribution%points)
       is_dependent = .false.
       is_dependent(inertia%dependents) = .true.
       self%single = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
@@ -146,17 +147,17 @@ contains
         self%layers(i) = last_layer(above, self%first(i)) - self%first(i) + 1
       end do
     end associate
-    self%height = model%map%height
-    self%area = model%contact_area
+    self%height = model%plate%map%height
+    self%area = model%plate%interfaces%contact_area
     do i = 1, size(inertia%dependents)
       self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
       self%area(inertia%dependents(i)) = 0
     end do
     allocate (self%stiffness(2, points), self%min_onset(points), self%strength(points), source=0.0_wp)
     self%history = create_jump_history(points)
-    do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
-      associate (law => model%cohesive_laws(model%zone(i)))
+    do i = 1, model%plate%distribution%owned
+      if (model%plate%zone(i) == 0) cycle
+      associate (law => model%plate%interfaces%cohesive_laws(model%plate%zone(i)))
         self%stiffness(:, i) = self%area(i)*[law%stiffness_shear, law%stiffness_opening]
       end associate
     end do
@@ -201,15 +202,15 @@ contains
     if (.not. allocated(cohesive%cohesive)) return
     if (self%is_held .neqv. cohesive%is_held) self%strength = 0
     self%is_held = cohesive%is_held
-    do i = 1, model%distribution%owned
-      if (model%zone(i) == 0 .or. .not. abs(cohesive%strength(i) - self%strength(i)) > 0) cycle
+    do i = 1, model%plate%distribution%owned
+      if (model%plate%zone(i) == 0 .or. .not. abs(cohesive%strength(i) - self%strength(i)) > 0) cycle
       self%strength(i) = cohesive%strength(i)
-      law = cohesive%law_at(model, i)
+      law = cohesive%law_at(model%plate, i)
       self%min_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
     end do
     if (.not. model%rig%elastic) return
-    do i = 1, model%distribution%owned
-      if (model%rig%clamp_preload(i) > 0) self%min_onset(i + 1:last_layer(model%map%above, i)) = huge(1.0_wp)
+    do i = 1, model%plate%distribution%owned
+      if (model%rig%clamp_preload(i) > 0) self%min_onset(i + 1:last_layer(model%plate%map%above, i)) = huge(1.0_wp)
     end do
   end subroutine find_onsets
 
@@ -237,9 +238,9 @@ contains
 
   !> Reduces the law of an undamaged point, and treats its stack as damaged. A smaller stiffness of opening stores less
   !> energy; the difference, a small part of the toughness, is recorded as algorithmic.
-  pure subroutine begin_softening(self, model, cohesive, p, factors, u)
+  pure subroutine begin_softening(self, plate, cohesive, p, factors, u)
     class(interface_stacks_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces; receive the law
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> The point
@@ -255,8 +256,8 @@ contains
     cohesive%by_energy(p) = .true.
     self%history%lost(2, p) = self%history%lost(2, p) + (1 - factors(2))*self%stiffness(2, p)*max(0.0_wp, u(3, p))**2/2
     first = p
-    do while (model%map%above(first) > 0)
-      first = model%map%above(first)
+    do while (plate%map%above(first) > 0)
+      first = plate%map%above(first)
     end do
     call self%mark_damaged(findloc(self%first, first, 1), cohesive, u)
   end subroutine begin_softening

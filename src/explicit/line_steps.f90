@@ -64,15 +64,15 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     type(line_steps_t) :: self
     type(prescribed_dof_t), allocatable :: dofs(:)
-    logical :: is_dependent(size(model%distribution%points))
+    logical :: is_dependent(size(model%plate%distribution%points))
     integer :: line, node, p
 
     is_dependent = .false.
     is_dependent(inertia%dependents) = .true.
     allocate (dofs(0), self%work(size(is_dependent)), self%first(size(is_dependent) + 1))
     self%work = 0
-    do line = 1, size(model%lines)
-      associate (its => model%lines(line))
+    do line = 1, size(model%loads%lines)
+      associate (its => model%loads%lines(line))
         if (.not. its%load%prescribed) cycle
         do node = 1, size(its%weight)
           p = its%point(its%first(node))
@@ -138,12 +138,12 @@ contains
 
     supported = inertia%constrained .and. abs(motion) > 0
     supported(:, inertia%dependents) = .false.
-    supported(:, model%distribution%owned + 1:) = .false.
+    supported(:, model%plate%distribution%owned + 1:) = .false.
     call add_supported(self, supported)
     do i = 1, size(self%dofs)
       associate (dof => self%dofs(i))
         dof%offset = component_of(dof, motion(:, dof%point))
-        if (dof%line > 0) dof%offset = dof%offset - model%lines(dof%line)%load%at_factor(0.0_wp)
+        if (dof%line > 0) dof%offset = dof%offset - model%loads%lines(dof%line)%load%at_factor(0.0_wp)
       end associate
     end do
   end subroutine start_from
@@ -191,7 +191,7 @@ contains
     do i = 1, size(self%dofs)
       associate (dof => self%dofs(i))
         value = left*dof%offset
-        if (dof%line > 0) value = value + model%lines(dof%line)%load%at_factor(load_factor)
+        if (dof%line > 0) value = value + model%loads%lines(dof%line)%load%at_factor(load_factor)
         dof%rate = (value - component_of(dof, motion(:, dof%point)))/steps%now
       end associate
     end do
@@ -273,8 +273,8 @@ contains
     integer :: line, node
     type(prescribed_dof_t) :: place
 
-    do line = 1, size(model%lines)
-      associate (its => model%lines(line))
+    do line = 1, size(model%loads%lines)
+      associate (its => model%loads%lines(line))
         if (its%load%prescribed) cycle
         values = its%load%at_factor(load_factors)
         do node = 1, size(its%weight)
@@ -296,16 +296,16 @@ contains
     class(line_steps_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Reactions of lines that prescribe motion, 0 for others
-    real(wp) :: forces(size(model%lines))
-    type(exact_sum_t) :: sums(size(model%lines))
+    real(wp) :: forces(size(model%loads%lines))
+    type(exact_sum_t) :: sums(size(model%loads%lines))
     integer :: i
 
     do i = 1, size(self%dofs)
       associate (dof => self%dofs(i))
-        if (dof%line > 0) call sums(dof%line)%add(dof%reaction/model%lines(dof%line)%share)
+        if (dof%line > 0) call sums(dof%line)%add(dof%reaction/model%loads%lines(dof%line)%share)
       end associate
     end do
-    forces = totals_of(model%communicator, sums)
+    forces = totals_of(model%plate%communicator, sums)
   end function totals
 
   !> Saves or loads reactions, changes and work.

@@ -10,6 +10,7 @@ module nodal_inertia
   use dependent_points, only: find_masters
   use inertia_forces, only: add_lumped_mass
   use inertia_scaling, only: inertia_scaling_t
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   implicit none
   private
@@ -52,29 +53,29 @@ contains
     real(wp), allocatable :: scaled(:, :)
     integer :: points
 
-    points = size(model%distribution%points)
+    points = size(model%plate%distribution%points)
     allocate (self%mass(4, points), self%inverse(7, points))
-    allocate (scaled(3, model%borders%columns), source=0.0_wp)
-    call add_lumped_mass(model%elements, scaling%sections(model), scaling%beams(model), scaled)
-    call model%borders%add(scaled)
+    allocate (scaled(3, model%plate%borders%columns), source=0.0_wp)
+    call add_lumped_mass(model%plate%elements, scaling%sections(model%plate), scaling%beams(model%plate), scaled)
+    call model%plate%borders%add(scaled)
     self%mass(1:3, :) = scaled(:, :points)
     self%mass(4, :) = model%lumped(1, :)
-    call find_dependents(model, self)
+    call find_dependents(model%plate, self)
     call fold_mass(self, self%mass)
     call find_springs(model, self)
   end function create_nodal_inertia
 
   !> Dependent points of this rank, and unknowns constrained by supports and symmetry.
-  subroutine find_dependents(model, self)
-    type(model_t), intent(in) :: model
+  subroutine find_dependents(plate, self)
+    type(composite_plate_t), intent(in) :: plate
     type(nodal_inertia_t), intent(inout) :: self
-    integer :: master(model%mesh%points()), i
-    real(wp) :: signs(5, model%mesh%points())
-    logical :: constrained(5, model%mesh%points())
+    integer :: master(plate%mesh%points()), i
+    real(wp) :: signs(5, plate%mesh%points())
+    logical :: constrained(5, plate%mesh%points())
 
-    constrained = model%fixed
-    call find_masters(model%mesh, master, signs, constrained, model%images)
-    associate (partition => model%distribution)
+    constrained = plate%constraints%fixed
+    call find_masters(plate%mesh, master, signs, constrained, plate%constraints%images)
+    associate (partition => plate%distribution)
       self%constrained = constrained(:, partition%points)
       self%dependents = pack([(i, i=1, partition%owned)], master(partition%points(:partition%owned)) > 0)
       self%masters = partition%local(master(partition%points(self%dependents)))

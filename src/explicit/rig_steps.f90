@@ -17,6 +17,7 @@ module rig_steps
   use field_mappings, only: area_field
   use interface_stacks, only: last_layer
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   use rank_totals, only: totals_of
@@ -67,45 +68,45 @@ module rig_steps
 contains
 
   !> Support points of the circular frames of a model.
-  function create_circle_frames(model) result(self)
-    type(model_t), intent(in) :: model
+  function create_circle_frames(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(circle_frames_t) :: self
     type(crossing_t), allocatable :: crossings(:)
     integer :: i, k, cell, nodes(9)
 
     allocate (self%points(3, 0), self%weights(3, 0), self%rig(0))
-    if (allocated(model%setup%supports)) then
-      do i = 1, size(model%setup%supports)
-        if (model%setup%supports(i)%unilateral) cycle
-        do cell = 1, product(model%mesh%cells)
-          crossings = circle_crossings(model%mesh, model%setup%supports(i), cell)
-          nodes = model%mesh%cell_nodes(cell)
+    if (allocated(plate%setup%supports)) then
+      do i = 1, size(plate%setup%supports)
+        if (plate%setup%supports(i)%unilateral) cycle
+        do cell = 1, product(plate%mesh%cells)
+          crossings = circle_crossings(plate%mesh, plate%setup%supports(i), cell)
+          nodes = plate%mesh%cell_nodes(cell)
           do k = 1, size(crossings)
             self%rig = [self%rig, i]
-            self%points = reshape([self%points, model%mesh%first_point(nodes(crossings(k)%nodes))], [3, size(self%rig)])
+            self%points = reshape([self%points, plate%mesh%first_point(nodes(crossings(k)%nodes))], [3, size(self%rig)])
             self%weights = reshape([self%weights, crossings(k)%weights], [3, size(self%rig)])
           end do
         end do
       end do
     end if
-    if (size(self%rig) > 0) call replace_dependents(model, self%points)
-    self%local = reshape(model%distribution%local([self%points]), shape(self%points))
-    where (self%local > model%distribution%owned) self%local = 0
+    if (size(self%rig) > 0) call replace_dependents(plate, self%points)
+    self%local = reshape(plate%distribution%local([self%points]), shape(self%points))
+    where (self%local > plate%distribution%owned) self%local = 0
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
 
   !> Replaces points that move as images by those that determine their motion; w is the same at both. The masters in
   !> `nodal_inertia` are those of this rank's points only, the masters here those of all ranks.
-  subroutine replace_dependents(model, points)
-    type(model_t), intent(in) :: model
+  subroutine replace_dependents(plate, points)
+    type(composite_plate_t), intent(in) :: plate
     !> Mesh points, (3, crossings)
     integer, intent(inout) :: points(:, :)
-    integer :: master(model%mesh%points()), i, k
-    real(wp) :: signs(5, model%mesh%points())
-    logical :: fixed(5, model%mesh%points())
+    integer :: master(plate%mesh%points()), i, k
+    real(wp) :: signs(5, plate%mesh%points())
+    logical :: fixed(5, plate%mesh%points())
 
     fixed = .false.
-    call find_masters(model%mesh, master, signs, fixed, model%images)
+    call find_masters(plate%mesh, master, signs, fixed, plate%constraints%images)
     do i = 1, size(points, 2)
       do k = 1, size(points, 1)
         if (master(points(k, i)) > 0) points(k, i) = master(points(k, i))
@@ -114,16 +115,16 @@ contains
   end subroutine replace_dependents
 
   !> Computes the matrix for an inertia. Collective.
-  subroutine prepare(self, model, inverse)
+  subroutine prepare(self, plate, inverse)
     class(circle_frames_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Inverse inertia of w of the layers, (points)
     real(wp), intent(in) :: inverse(:)
     real(wp) :: matrix(size(self%rig), size(self%rig)), scale(size(self%rig))
     integer :: i, j, k, l
 
     if (size(self%rig) == 0) return
-    self%inverse = gathered(self, model, inverse_of_nodes(model%map%above, inverse))
+    self%inverse = gathered(self, plate, inverse_of_nodes(plate%map%above, inverse))
     matrix = 0
     do j = 1, size(self%rig)
       do i = 1, size(self%rig)
@@ -176,9 +177,9 @@ contains
   end function inverse_of_nodes
 
   !> Values at the nodes of all points, the same on every rank. Collective.
-  function gathered(self, model, values)
+  function gathered(self, plate, values)
     type(circle_frames_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> (points)
     real(wp), intent(in) :: values(:)
     !> (3, crossings)
@@ -193,15 +194,15 @@ contains
       end do
     end do
     list = reshape(gathered, [size(list)])
-    call model%communicator%sum(list)
+    call plate%communicator%sum(list)
     gathered = reshape(list, shape(gathered))
   end function gathered
 
   !> Enforces zero deflection of the points at the end of a step. Collective.
-  subroutine constrain(self, model, steps, w, rate)
+  subroutine constrain(self, plate, steps, w, rate)
     !> The points; receive their forces
     class(circle_frames_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(step_lengths_t), intent(in) :: steps
     !> Deflection at the end of the step, and its rate, (points); corrected
     real(wp), intent(inout) :: w(:), rate(:)
@@ -209,7 +210,7 @@ contains
     integer :: i, k
 
     if (size(self%rig) == 0) return
-    self%forces = matmul(self%stiffness, sum(self%weights*gathered(self, model, w), 1))/(steps%now*steps%mean())
+    self%forces = matmul(self%stiffness, sum(self%weights*gathered(self, plate, w), 1))/(steps%now*steps%mean())
     do i = 1, size(self%rig)
       do k = 1, 3
         if (self%local(k, i) == 0) cycle
@@ -226,12 +227,12 @@ contains
     type(rig_steps_t) :: self
     integer :: points
 
-    points = size(model%distribution%points)
+    points = size(model%plate%distribution%points)
     allocate (self%on_frame(points), source=.false.)
     if (model%rig%unilateral) self%on_frame = model%rig%frame > 0
     allocate (self%reaction(points), self%approach(points), self%frame_loss(points), self%step_loss(points), &
               source=0.0_wp)
-    self%circles = create_circle_frames(model)
+    self%circles = create_circle_frames(model%plate)
   end function create_rig_steps
 
   !> Adds the forces of clamps to those on the lowest layers.
@@ -242,9 +243,9 @@ contains
     integer :: i, lowest
 
     if (.not. model%rig%elastic) return
-    do i = 1, model%distribution%owned
+    do i = 1, model%plate%distribution%owned
       if (.not. model%rig%clamp_preload(i) > 0) cycle
-      lowest = last_layer(model%map%above, i)
+      lowest = last_layer(model%plate%map%above, i)
       force(3, lowest) = force(3, lowest) + model%rig%clamp_preload(i)
     end do
   end subroutine add_clamp_forces
@@ -327,11 +328,11 @@ contains
 
     reactions = 0
     if (.not. allocated(model%rig%constrained_by)) return
-    do i = 1, model%distribution%owned
+    do i = 1, model%plate%distribution%owned
       associate (constrained_by => model%rig%constrained_by(i), on_frame => model%rig%frame(i), &
                  clamps => model%rig%clamps(i))
         if (constrained_by > 0) then
-          do layer = i, last_layer(model%map%above, i)
+          do layer = i, last_layer(model%plate%map%above, i)
             call sums(constrained_by)%add(force(3, layer))
           end do
         else
@@ -341,12 +342,12 @@ contains
         end if
       end associate
     end do
-    reactions = totals_of(model%communicator, sums)
+    reactions = totals_of(model%plate%communicator, sums)
     do i = 1, size(self%circles%rig)
       associate (rig => self%circles%rig(i))
         reactions(rig) = reactions(rig) + self%circles%forces(i)
       end associate
     end do
-    reactions = reactions*model%mesh%multiplicity
+    reactions = reactions*model%plate%mesh%multiplicity
   end function reactions_of
 end module rig_steps

@@ -13,7 +13,7 @@ module stable_steps
   use internal_forces, only: batch_force
   use kinds, only: long, wp
   use lagrange9, only: gauss_shapes
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plate_options, only: kinematics_linear
   use reference_fields, only: gather, reference_values
   implicit none
@@ -51,8 +51,8 @@ contains
   end function pseudo_random
 
   !> Highest angular frequency of all elements, and the number of the element. Collective.
-  subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_elements)
-    type(model_t), intent(in) :: model
+  subroutine highest_element_frequency(plate, stiffness, scaling, omega, element, of_elements)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(inertia_scaling_t), intent(in) :: scaling
@@ -68,22 +68,22 @@ contains
 
     largest = 0
     element = 0
-    sections = scaling%sections(model)
-    beams = scaling%beams(model)
-    if (present(of_elements)) allocate (of_elements(lanes, model%elements%batches), source=0.0_wp)
-    do b = 1, model%elements%batches
-      squares = batch_frequencies(model, b, stiffness(:, :, b), sections(:, :, b), beams)
-      if (present(of_elements)) of_elements(:model%elements%lanes_used(b), b) = squares(:model%elements%lanes_used(b))
-      do lane = 1, model%elements%lanes_used(b)
+    sections = scaling%sections(plate)
+    beams = scaling%beams(plate)
+    if (present(of_elements)) allocate (of_elements(lanes, plate%elements%batches), source=0.0_wp)
+    do b = 1, plate%elements%batches
+      squares = batch_frequencies(plate, b, stiffness(:, :, b), sections(:, :, b), beams)
+      if (present(of_elements)) of_elements(:plate%elements%lanes_used(b), b) = squares(:plate%elements%lanes_used(b))
+      do lane = 1, plate%elements%lanes_used(b)
         if (.not. squares(lane) > largest) cycle
         largest = squares(lane)
-        element = model%distribution%elements((b - 1)*lanes + lane)
+        element = plate%distribution%elements((b - 1)*lanes + lane)
       end do
     end do
     omega = largest
-    call model%communicator%maximum(omega)
+    call plate%communicator%maximum(omega)
     if (largest < omega) element = huge(element)
-    call model%communicator%minimum(element)
+    call plate%communicator%minimum(element)
     omega = sqrt(omega)
   end subroutine highest_element_frequency
 
@@ -95,8 +95,8 @@ contains
   !> squares of both frequencies are added. With linear strains the slopes are those of the stress-free shape, and N
   !> does not act. The curvature of a surface along which u and v are measured is part of `of_elements`, not of the
   !> slopes. Collective.
-  real(wp) function stiffened_frequency(model, stiffness, of_elements, motion) result(omega)
-    type(model_t), intent(in) :: model
+  real(wp) function stiffened_frequency(plate, stiffness, of_elements, motion) result(omega)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
@@ -109,25 +109,25 @@ contains
 
     omega = 0
     unused = 0
-    do b = 1, model%elements%batches
-      call gather(model%elements%points(:, :, b), motion, r)
-      call strains_of_batch(model%elements, b, model%setup%mesh%kinematics, r, strains, slopes)
-      if (allocated(model%elements%surface_slopes)) call take_surface_slopes(model%elements, b, slopes)
-      if (model%setup%mesh%kinematics == kinematics_linear) strains = 0
+    do b = 1, plate%elements%batches
+      call gather(plate%elements%points(:, :, b), motion, r)
+      call strains_of_batch(plate%elements, b, plate%setup%mesh%kinematics, r, strains, slopes)
+      if (allocated(plate%elements%surface_slopes)) call take_surface_slopes(plate%elements, b, slopes)
+      if (plate%setup%mesh%kinematics == kinematics_linear) strains = 0
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
-      added = gradient_bound*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), &
-                                                 slopes, strains)/max(smallest_divisor, model%elements%mass(:, 1, b))
-      if (model%elements%has_beams(b)) call raise_by_beams(model, b, r, added)
+      added = gradient_bound*geometric_stiffness(stiffness(:, :, b), plate%elements%inverse_jacobian(:, :, :, b), &
+                                                 slopes, strains)/max(smallest_divisor, plate%elements%mass(:, 1, b))
+      if (plate%elements%has_beams(b)) call raise_by_beams(plate, b, r, added)
       omega = max(omega, maxval(of_elements(:, b) + added))
     end do
-    call model%communicator%maximum(omega)
+    call plate%communicator%maximum(omega)
     omega = sqrt(omega)
   end function stiffened_frequency
 
   !> Raises the bound of elements with beams to that of their beams, if it is larger: the frequency of both together is
   !> at most the higher of those of each with its own inertia.
-  pure subroutine raise_by_beams(model, b, r, added)
-    type(model_t), intent(in) :: model
+  pure subroutine raise_by_beams(plate, b, r, added)
+    type(composite_plate_t), intent(in) :: plate
     !> Number of the batch
     integer, intent(in) :: b
     !> Unknowns of the nodes
@@ -136,10 +136,10 @@ contains
     real(wp), intent(inout) :: added(lanes)
     integer :: k
 
-    do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-      associate (beam => model%elements%beams(k), lane => model%elements%beams(k)%lane)
+    do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
+      associate (beam => plate%elements%beams(k), lane => plate%elements%beams(k)%lane)
         added(lane) = max(added(lane), line_gradient_bound/beam%mass(1)*beam%length()* &
-                          beam%slope_stiffness(model%setup%mesh%kinematics /= kinematics_linear, &
+                          beam%slope_stiffness(plate%setup%mesh%kinematics /= kinematics_linear, &
                                                reshape(transpose(r(lane, :, :)), [45])))
       end associate
     end do
@@ -192,8 +192,8 @@ contains
   end function geometric_stiffness
 
   !> Squares of the highest frequencies of the elements of a batch: largest eigenvalue of K M^-1 by Lanczos iteration.
-  function batch_frequencies(model, b, stiffness, section, beams) result(squares)
-    type(model_t), intent(in) :: model
+  function batch_frequencies(plate, b, stiffness, section, beams) result(squares)
+    type(composite_plate_t), intent(in) :: plate
     !> Number of the batch
     integer, intent(in) :: b
     !> Section stiffness
@@ -208,16 +208,16 @@ contains
     real(wp) :: diagonal(lanes, lanczos_steps), off_diagonal(lanes, 0:lanczos_steps)
     integer :: lanczos_step
 
-    inverse = inverse_inertia(model, b, section)
-    if (model%elements%has_beams(b)) call add_beams(model, b, section, beams, inverse)
+    inverse = inverse_inertia(plate, b, section)
+    if (plate%elements%has_beams(b)) call add_beams(plate, b, section, beams, inverse)
     force = start_vector(inverse)
-    call batch_force(model%elements, b, stiffness, force)
+    call batch_force(plate%elements, b, stiffness, force)
     before = 0
     r = 0
     do lanczos_step = 0, lanczos_steps
       if (lanczos_step > 0) then
         force = response
-        call batch_force(model%elements, b, stiffness, force)
+        call batch_force(plate%elements, b, stiffness, force)
         diagonal(:, lanczos_step) = sum(sum(force*response, 3), 2)
         force = force - times_factors(r, diagonal(:, lanczos_step)) &
                 - times_factors(before, off_diagonal(:, lanczos_step - 1))
@@ -250,8 +250,8 @@ contains
   end function times_factors
 
   !> Inverse inertia of the nodes of a batch: of displacement, both, rotation, and w.
-  function inverse_inertia(model, b, section) result(inverse)
-    type(model_t), intent(in) :: model
+  function inverse_inertia(plate, b, section) result(inverse)
+    type(composite_plate_t), intent(in) :: plate
     !> Number of the batch
     integer, intent(in) :: b
     !> Scaled I0, I1, I2
@@ -262,18 +262,18 @@ contains
     integer :: a
 
     do a = 1, 9
-      share = max(smallest_divisor, matmul(model%elements%weight(:, :, b), gauss_shapes(a, :)))
+      share = max(smallest_divisor, matmul(plate%elements%weight(:, :, b), gauss_shapes(a, :)))
       determinant = share*max(smallest_divisor, section(:, 1)*section(:, 3) - section(:, 2)**2)
       inverse(:, a, 1) = section(:, 3)/determinant
       inverse(:, a, 2) = -section(:, 2)/determinant
       inverse(:, a, 3) = section(:, 1)/determinant
-      inverse(:, a, 4) = 1/(share*max(smallest_divisor, model%elements%mass(:, 1, b)))
+      inverse(:, a, 4) = 1/(share*max(smallest_divisor, plate%elements%mass(:, 1, b)))
     end do
   end function inverse_inertia
 
   !> Computes the inverse inertia of elements with beams anew.
-  subroutine add_beams(model, b, section, beams, inverse)
-    type(model_t), intent(in) :: model
+  subroutine add_beams(plate, b, section, beams, inverse)
+    type(composite_plate_t), intent(in) :: plate
     !> Number of the batch
     integer, intent(in) :: b
     !> Scaled I0, I1, I2 of the sections, and of the beams, (3, beams)
@@ -285,20 +285,20 @@ contains
 
     do lane = 1, lanes
       do a = 1, 9
-        share = dot_product(model%elements%weight(lane, :, b), gauss_shapes(a, :))
-        mass(:, a, lane) = share*[section(lane, :), model%elements%mass(lane, 1, b)]
+        share = dot_product(plate%elements%weight(lane, :, b), gauss_shapes(a, :))
+        mass(:, a, lane) = share*[section(lane, :), plate%elements%mass(lane, 1, b)]
       end do
     end do
-    do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-      associate (beam => model%elements%beams(k))
+    do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
+      associate (beam => plate%elements%beams(k))
         lumped = lumped_inertia(beams(:, k))
         mass(:3, beam%nodes, beam%lane) = mass(:3, beam%nodes, beam%lane) + lumped
         lumped = lumped_inertia(beam%mass)
         mass(4, beam%nodes, beam%lane) = mass(4, beam%nodes, beam%lane) + lumped(1, :)
       end associate
     end do
-    do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-      lane = model%elements%beams(k)%lane
+    do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
+      lane = plate%elements%beams(k)%lane
       do a = 1, 9
         associate (m => mass(:, a, lane))
           inverse(lane, a, :) = [[m(3), -m(2), m(1)]/(m(1)*m(3) - m(2)**2), 1/m(4)]

@@ -6,7 +6,7 @@ module stack_batches
   use cohesive_points, only: cohesive_point_t
   use interface_stacks, only: interface_stacks_t, jump_history_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use nodal_inertia, only: along_x, along_y, along_z, nodal_inertia_t
   use surface_friction, only: sliding_t
   use tridiagonal_systems, only: factorize
@@ -88,11 +88,11 @@ module stack_batches
 contains
 
   !> Batches of all stacks. Stacks of the same number of layers and of the same kind share batches.
-  pure function new_stack_batches(stacks, inertia, model, constrained, step_square) result(self)
+  pure function new_stack_batches(stacks, inertia, plate, constrained, step_square) result(self)
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> True for stacks with layers that frames or lines constrain
     logical, intent(in) :: constrained(:)
     !> Product of the step and the mean of it and the step before
@@ -106,17 +106,17 @@ contains
     self%open = 0
     self%step_square = step_square
     do i = 1, size(constrained)
-      call join(self, i, constrained(i), stacks, inertia, model)
+      call join(self, i, constrained(i), stacks, inertia, plate)
     end do
     self%damaged = count(stacks%damaged)
   end function new_stack_batches
 
   !> Moves stacks that have become damaged to batches of damaged stacks.
-  pure subroutine move_damaged(self, stacks, inertia, model)
+  pure subroutine move_damaged(self, stacks, inertia, plate)
     class(stack_batches_t), intent(inout) :: self
     type(interface_stacks_t), intent(in) :: stacks
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: b, lane, i
 
     if (count(stacks%damaged) == self%damaged) return
@@ -127,16 +127,16 @@ contains
         i = self%list(b)%stack(lane)
         if (.not. stacks%damaged(i)) cycle
         ! The last stack takes its lane.
-        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, model, &
+        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, plate, &
                        self%step_square)
         self%list(b)%members = self%list(b)%members - 1
-        call join(self, i, self%list(b)%constrained, stacks, inertia, model)
+        call join(self, i, self%list(b)%constrained, stacks, inertia, plate)
       end do
     end do
   end subroutine move_damaged
 
   !> Adds a stack to a batch with free lanes, or to a new one, which it fills.
-  pure subroutine join(self, i, constrained, stacks, inertia, model)
+  pure subroutine join(self, i, constrained, stacks, inertia, plate)
     type(stack_batches_t), intent(inout) :: self
     !> Index of the stack
     integer, intent(in) :: i
@@ -144,7 +144,7 @@ contains
     logical, intent(in) :: constrained
     type(interface_stacks_t), intent(in) :: stacks
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: last
 
     associate (open => self%open(stacks%layers(i), merge(1, 0, constrained) + merge(2, 0, stacks%damaged(i))))
@@ -158,7 +158,7 @@ contains
       end if
       associate (batch => self%list(open))
         batch%members = batch%members + 1
-        call set_lanes(batch, batch%members, last, i, stacks, inertia, model, self%step_square)
+        call set_lanes(batch, batch%members, last, i, stacks, inertia, plate, self%step_square)
       end associate
     end associate
   end subroutine join
@@ -180,13 +180,13 @@ contains
   end subroutine allocate_batch
 
   !> Sets the constants of lanes.
-  pure subroutine set_lanes(self, from, to, i, stacks, inertia, model, step_square)
+  pure subroutine set_lanes(self, from, to, i, stacks, inertia, plate, step_square)
     type(stack_batch_t), intent(inout) :: self
     !> First and last lane, and index of the stack
     integer, intent(in) :: from, to, i
     type(interface_stacks_t), intent(in) :: stacks
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Product of the step and the mean of it and the step before
     real(wp), intent(in) :: step_square
     integer :: lane, p
@@ -199,7 +199,7 @@ contains
       self%inverse(lane, :, :) = inertia%inverse(:, p:p + self%n)
       self%stiffness(lane, :, :) = stacks%stiffness(:, p + 1:p + self%n)
       call couple(self, lane, step_square)
-      if (self%damaged) call set_surfaces(self%surfaces, lane, p, stacks, model)
+      if (self%damaged) call set_surfaces(self%surfaces, lane, p, stacks, plate)
     end do
   end subroutine set_lanes
 
@@ -244,18 +244,18 @@ contains
   end function coupling
 
   !> Sets the surfaces of a lane.
-  pure subroutine set_surfaces(surfaces, lane, first, stacks, model)
+  pure subroutine set_surfaces(surfaces, lane, first, stacks, plate)
     !> One for each interface
     type(surface_lanes_t), intent(inout) :: surfaces(:)
     !> The lane, and first point of the stack
     integer, intent(in) :: lane, first
     type(interface_stacks_t), intent(in) :: stacks
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: j
 
     do j = 1, size(surfaces)
-      associate (surface => surfaces(j), zone => model%zone(first + j))
-        associate (law => model%cohesive_laws(zone))
+      associate (surface => surfaces(j), zone => plate%zone(first + j))
+        associate (law => plate%interfaces%cohesive_laws(zone))
           surface%area(lane) = stacks%area(first + j)
           surface%shear(lane) = law%stiffness_shear
           surface%opening(lane) = law%stiffness_opening
@@ -263,8 +263,8 @@ contains
           surface%toughness(lane) = min(law%toughness_opening, law%toughness_shear)
           surface%failure_ratio(lane) = law%failure_ratio
         end associate
-        surface%friction(lane) = model%setup%delaminations(zone)%friction
-        surface%contact(lane) = prevents_penetration(model, zone)
+        surface%friction(lane) = plate%setup%delaminations(zone)%friction
+        surface%contact(lane) = prevents_penetration(plate, zone)
       end associate
     end do
   end subroutine set_surfaces

@@ -6,7 +6,7 @@ module stack_motions
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, find_resultants, find_velocities
   use line_steps, only: line_steps_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
   use stack_batches, only: stack_batches_t, load_states, new_stack_batches, stack_batch_t, store_states, &
@@ -41,10 +41,10 @@ module stack_motions
 contains
 
   !> Updates all stacks.
-  subroutine move_stacks(nodes, model, cohesive, u, v)
+  subroutine move_stacks(nodes, plate, cohesive, u, v)
     !> The nodes; their stacks receive forces, changes of the jumps and losses
     type(nodal_steps_t), intent(inout) :: nodes
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces; receive the growth of damage
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
@@ -54,14 +54,14 @@ contains
 
     call move_alloc(nodes%batches, batches)
     if (allocated(batches)) then
-      call batches%move_damaged(nodes%stacks, nodes%inertia, model)
+      call batches%move_damaged(nodes%stacks, nodes%inertia, plate)
     else
-      batches = new_stack_batches(nodes%stacks, nodes%inertia, model, are_constrained(nodes), &
+      batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, are_constrained(nodes), &
                                   nodes%steps%now*nodes%steps%mean())
     end if
     call nodes%stacks%history%begin_step()
     do b = 1, batches%filled
-      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, model, cohesive, u, v)
+      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, plate, cohesive, u, v)
     end do
     call move_alloc(batches, nodes%batches)
   end subroutine move_stacks
@@ -84,11 +84,11 @@ contains
   end function are_constrained
 
   !> Updates the stacks of a batch.
-  subroutine move_batch(batch, nodes, model, cohesive, u, v)
+  subroutine move_batch(batch, nodes, plate, cohesive, u, v)
     type(stack_batch_t), intent(in) :: batch
     !> The nodes
     type(nodal_steps_t), intent(inout) :: nodes
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
@@ -109,7 +109,7 @@ contains
       trial = jumps + steps%now*rates(:, :3, 2:)
       if (batch%damaged) then
         call load_states(batch, cohesive, history, jumps, last, change, states)
-        call solve_damaged(batch, states, steps, model, cohesive, trial, tractions, friction, normal, given)
+        call solve_damaged(batch, states, steps, plate, cohesive, trial, tractions, friction, normal, given)
       else
         call solve_intact(n, batch%factors, jumps, last, change, trial, tractions)
         if (batch%constrained) call weigh_openings(n, batch%stiffness, jumps, last, change, normal, given)
@@ -123,7 +123,7 @@ contains
       change = steps%now*rates(:, :3, 2:)
       displacement = displacement + steps%now*rates
       if (batch%damaged) then
-        call update_damaged(batch, states, steps, model, cohesive, change, tractions, before, friction, lost)
+        call update_damaged(batch, states, steps, plate, cohesive, change, tractions, before, friction, lost)
         call store_states(batch, states, cohesive, history)
       else
         call update_intact(batch, steps, jumps, change, last, tractions, before, lost)
@@ -134,7 +134,7 @@ contains
       call put(3, points, tractions, batch%first + 1, n, batch%members, history%forces)
       call put(2, points, lost, batch%first + 1, n, batch%members, history%lost)
     end associate
-    if (.not. batch%damaged) call start_damage(batch, nodes%stacks, model, displacement, cohesive, u)
+    if (.not. batch%damaged) call start_damage(batch, nodes%stacks, plate, displacement, cohesive, u)
   end subroutine move_batch
 
   !> Velocities of layers, and rates of the unknowns, at the end of a step without tractions.

@@ -14,7 +14,7 @@ module stack_solutions
   use cohesive_surfaces, only: cohesive_surfaces_t
   use element_batches, only: lanes
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use roundings, only: rounding
   use stack_batches, only: stack_batch_t, surface_lanes_t, surface_states_t
   use step_lengths, only: step_lengths_t
@@ -57,11 +57,11 @@ contains
   end subroutine solve_intact
 
   !> Forces of damaged stacks, with corrections where damage grows.
-  pure subroutine solve_damaged(batch, states, steps, model, cohesive, trial, forces, friction, normal, given)
+  pure subroutine solve_damaged(batch, states, steps, plate, cohesive, trial, forces, friction, normal, given)
     type(stack_batch_t), intent(in) :: batch
     type(surface_states_t), intent(in) :: states(batch%n)
     type(step_lengths_t), intent(in) :: steps
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Jumps at the end without tractions
     real(wp), intent(in) :: trial(lanes, 3, batch%n)
@@ -86,7 +86,7 @@ contains
       do lane = 1, lanes
         if (.not. grows(lane)) cycle
         associate (p => batch%first(lane) + j)
-          call correct_force(cohesive%surfaces_of(model, p), cohesive%points(p), batch%surfaces(j)%area(lane), &
+          call correct_force(cohesive%surfaces_of(plate, p), cohesive%points(p), batch%surfaces(j)%area(lane), &
                              states(j)%work(lane), states(j)%start(lane, :), jumps(lane, :, j), &
                              steps%kept*states(j)%last(lane, :), secant(lane, :, j), given(lane, :, j), grows(lane))
         end associate

@@ -10,7 +10,7 @@ module stack_updates
   use element_batches, only: lanes
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use stack_batches, only: stack_batch_t, surface_lanes_t, surface_states_t
   use stack_solutions, only: energy_of, friction_t, may_grow
   use step_lengths, only: step_lengths_t
@@ -63,11 +63,11 @@ contains
   end function work_of
 
   !> Finds the onset of damage in undamaged stacks at the jumps at the end of a step.
-  subroutine start_damage(batch, stacks, model, displacement, cohesive, u)
+  subroutine start_damage(batch, stacks, plate, displacement, cohesive, u)
     type(stack_batch_t), intent(in) :: batch
     !> The stacks; are damaged if an interface is
     type(interface_stacks_t), intent(inout) :: stacks
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns at the end of the step
     real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
     type(cohesive_interfaces_t), intent(inout) :: cohesive
@@ -85,16 +85,16 @@ contains
     end do
     if (.not. any(starts)) return
     do lane = 1, batch%members
-      if (starts(lane)) call start_in_stack(stacks, batch%stack(lane), model, cohesive, u)
+      if (starts(lane)) call start_in_stack(stacks, batch%stack(lane), plate, cohesive, u)
     end do
   end subroutine start_damage
 
   !> Finds the onset of damage of a stack.
-  subroutine start_in_stack(stacks, i, model, cohesive, u)
+  subroutine start_in_stack(stacks, i, plate, cohesive, u)
     type(interface_stacks_t), intent(inout) :: stacks
     !> Index of the stack
     integer, intent(in) :: i
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
@@ -109,7 +109,7 @@ contains
         k = stacks%stiffness([1, 1, 2], p)
         associate (jump => u(1:3, p), point => cohesive%points(p))
           if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
-          surfaces = cohesive%surfaces_of(model, p)
+          surfaces = cohesive%surfaces_of(plate, p)
           point%sliding%slip = jump(1:2)
           call surfaces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
           history%lost(2, p) = history%lost(2, p) + sum(k*jump**2)/2 &
@@ -123,12 +123,12 @@ contains
 
   !> Updates damage and friction of damaged stacks, and adds the work of the tractions beyond what surfaces store and
   !> dissipate.
-  pure subroutine update_damaged(batch, states, steps, model, cohesive, change, forces, before, friction, lost)
+  pure subroutine update_damaged(batch, states, steps, plate, cohesive, change, forces, before, friction, lost)
     type(stack_batch_t), intent(in) :: batch
     !> Their surfaces; are updated
     type(surface_states_t), intent(inout) :: states(batch%n)
     type(step_lengths_t), intent(in) :: steps
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Change of the jumps, and forces on them in this step and in the last
     real(wp), dimension(lanes, 3, batch%n), intent(in) :: change, forces, before
@@ -145,7 +145,7 @@ contains
       associate (new => states(j), surface => batch%surfaces(j), area => batch%surfaces(j)%area)
         to = old%start + change(:, :, j)
         work = work_of(steps, forces(:, :, j), before(:, :, j), change(:, :, j), old%last)
-        call grow_damage(batch, j, model, cohesive, to, new)
+        call grow_damage(batch, j, plate, cohesive, to, new)
         call slip_surfaces(surface, friction(j), to, change(:, :, j), steps%kept*old%last, new)
         in_contact = lost_in_contact(batch, j, steps, old%start(:, 3), change(:, 3, j), old%last(:, 3)) &
                      + area*closing_loss(surface, old%start(:, 3), to(:, 3), new%damage - old%damage)
@@ -159,11 +159,11 @@ contains
   end subroutine update_damaged
 
   !> Damage, energy dissipated and work per area on the law with the jumps at the end.
-  pure subroutine grow_damage(batch, j, model, cohesive, to, state)
+  pure subroutine grow_damage(batch, j, plate, cohesive, to, state)
     type(stack_batch_t), intent(in) :: batch
     !> The interface
     integer, intent(in) :: j
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Jumps at the end
     real(wp), intent(in) :: to(lanes, 3)
@@ -185,7 +185,7 @@ contains
     do lane = 1, lanes
       if (.not. grows(lane)) cycle
       associate (old => cohesive%points(batch%first(lane) + j))
-        surfaces = cohesive%surfaces_of(model, batch%first(lane) + j)
+        surfaces = cohesive%surfaces_of(plate, batch%first(lane) + j)
         call surfaces%traction(to(lane, :), old, traction, new)
         state%damage(lane) = new%damage
         state%dissipated(lane) = new%dissipated

@@ -6,6 +6,7 @@
 module struck_patches
   use archives, only: archive_t
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use nose_contacts, only: nose_contact_t, nose_t
   implicit none
@@ -40,7 +41,7 @@ contains
   function create_struck_patch(model) result(self)
     type(model_t), intent(in) :: model
     type(struck_patch_t) :: self
-    real(wp) :: weights(model%mesh%points())
+    real(wp) :: weights(model%plate%mesh%points())
     integer, allocatable :: reached(:)
     integer :: i
 
@@ -50,9 +51,9 @@ contains
       allocate (self%weights(size(self%local)), source=0.0_wp)
     else
       weights = 0
-      associate (partition => model%distribution)
+      associate (partition => model%plate%distribution)
         weights(partition%points(:partition%owned)) = model%patch%weights(:partition%owned)
-        call model%communicator%sum(weights)
+        call model%plate%communicator%sum(weights)
         reached = pack([(i, i=1, size(weights))], abs(weights) > 0)
         self%local = partition%local(reached)
         where (self%local > partition%owned) self%local = 0
@@ -63,9 +64,9 @@ contains
   end function create_struck_patch
 
   !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.
-  subroutine find_deflections(self, model, displacement, w, struck)
+  subroutine find_deflections(self, plate, displacement, w, struck)
     class(struck_patch_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (reached)
@@ -79,16 +80,16 @@ contains
     do i = 1, size(w)
       if (self%local(i) > 0) list(i) = displacement(3, self%local(i))
     end do
-    if (model%struck > 0) list(size(list)) = displacement(3, model%struck)
-    call model%communicator%sum(list)
+    if (plate%struck%point > 0) list(size(list)) = displacement(3, plate%struck%point)
+    call plate%communicator%sum(list)
     w = list(:size(w))
     struck = list(size(list))
   end subroutine find_deflections
 
   !> Gathers the inverse inertia of the points from their ranks. Collective.
-  subroutine gather(self, model, inverse)
+  subroutine gather(self, plate, inverse)
     class(struck_patch_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Inverse inertia of w, (points)
     real(wp), intent(in) :: inverse(:)
     integer :: i
@@ -98,7 +99,7 @@ contains
     do i = 1, size(self%local)
       if (self%local(i) > 0) self%inverse(i) = inverse(self%local(i))
     end do
-    call model%communicator%sum(self%inverse)
+    call plate%communicator%sum(self%inverse)
   end subroutine gather
 
   !> Indentation at a position of the impactor: from the mean deflection of the patch, or by the contact of the nose,

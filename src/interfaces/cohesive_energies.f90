@@ -13,10 +13,10 @@ contains
 
   !> Change of the energy stored by this rank's points in a step minus the work of the mean tractions; negative where
   !> they dissipate.
-  pure real(wp) function stored_beyond_work(self, model, old, before, after) result(energy)
+  pure real(wp) function stored_beyond_work(self, plate, old, before, after) result(energy)
     !> The interfaces at the end of the step
     type(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces at its start
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns before and after it, (5, points)
@@ -28,15 +28,16 @@ contains
 
     energy = 0
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      surfaces = old%surfaces_of(model, i)
+      surfaces = old%surfaces_of(plate, i)
       start = old%points(i)
       call surfaces%traction(before(1:3, i), start, traction(:, 1), point)
       start%sliding%limit = self%points(i)%sliding%limit
       call surfaces%traction(after(1:3, i), start, traction(:, 2), point)
-      energy = energy + model%contact_area(i)*(surfaces%stored(after(1:3, i), self%points(i)) - surfaces%stored( &
-        before(1:3, i), old%points(i)) - dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
+      energy = energy + plate%interfaces%contact_area(i)*( &
+        surfaces%stored(after(1:3, i), self%points(i)) - surfaces%stored(before(1:3, i), old%points(i)) - &
+        dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
     end do
   end function stored_beyond_work
 end module cohesive_energies

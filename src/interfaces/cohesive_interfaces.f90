@@ -62,35 +62,35 @@ module cohesive_interfaces
 contains
 
   !> All cohesive interfaces, failed within their starters.
-  pure function new_cohesive_interfaces(model, free) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_cohesive_interfaces(plate, free) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> True for jumps released by starters, (local points)
     logical, intent(in) :: free(:)
     type(cohesive_interfaces_t) :: self
     integer :: i
 
-    if (.not. model%map%layered) return
-    if (.not. any(model%setup%delaminations%law == law_cohesive)) return
-    allocate (self%cohesive(size(model%zone)), source=.false.)
-    allocate (self%points(size(model%zone)))
-    allocate (self%strength(size(model%zone)), self%opening(size(model%zone)), source=1.0_wp)
-    allocate (self%by_energy(size(model%zone)), source=.false.)
-    allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
-    if (.not. model%setup%has_inertia()) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
-    do i = 1, size(model%zone)
-      if (model%zone(i) == 0) cycle
-      self%cohesive(i) = model%setup%delaminations(model%zone(i))%law == law_cohesive
+    if (.not. plate%map%layered) return
+    if (.not. any(plate%setup%delaminations%law == law_cohesive)) return
+    allocate (self%cohesive(size(plate%zone)), source=.false.)
+    allocate (self%points(size(plate%zone)))
+    allocate (self%strength(size(plate%zone)), self%opening(size(plate%zone)), source=1.0_wp)
+    allocate (self%by_energy(size(plate%zone)), source=.false.)
+    allocate (self%stiffness(3, size(plate%zone)), source=0.0_wp)
+    if (.not. plate%setup%has_inertia()) allocate (self%tangents(3, 3, size(plate%zone)), source=0.0_wp)
+    do i = 1, size(plate%zone)
+      if (plate%zone(i) == 0) cycle
+      self%cohesive(i) = plate%setup%delaminations(plate%zone(i))%law == law_cohesive
       if (.not. self%cohesive(i)) cycle
       if (free(i)) self%points(i)%damage = 1
-      self%stiffness(:, i) = (1 - self%points(i)%damage)*model%contact_area(i) &
-                             *stiffness_of(model%cohesive_laws(model%zone(i)))
+      self%stiffness(:, i) = (1 - self%points(i)%damage)*plate%interfaces%contact_area(i) &
+                             *stiffness_of(plate%interfaces%cohesive_laws(plate%zone(i)))
     end do
   end function new_cohesive_interfaces
 
   !> Adds the forces of the tractions on the jumps, and updates the history variables of the trial state.
-  pure subroutine add_forces(self, model, old, displacement, force, energy)
+  pure subroutine add_forces(self, plate, old, displacement, force, energy)
     class(cohesive_interfaces_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
@@ -105,10 +105,10 @@ contains
     integer :: i
 
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      surfaces = self%surfaces_of(model, i)
-      associate (jumps => displacement(1:3, i), area => model%contact_area(i))
+      surfaces = self%surfaces_of(plate, i)
+      associate (jumps => displacement(1:3, i), area => plate%interfaces%contact_area(i))
         start = old%points(i)
         start%sliding%limit = self%points(i)%sliding%limit
         call surfaces%traction(jumps, start, traction, self%points(i))
@@ -121,9 +121,9 @@ contains
   end subroutine add_forces
 
   !> Derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows in a mixed mode.
-  pure function tangents_at(self, model, old, displacement) result(tangents)
+  pure function tangents_at(self, plate, old, displacement) result(tangents)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
@@ -134,14 +134,14 @@ contains
     type(cohesive_point_t) :: start
     integer :: i
 
-    allocate (tangents(3, 3, model%distribution%owned), source=0.0_wp)
+    allocate (tangents(3, 3, plate%distribution%owned), source=0.0_wp)
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      surfaces = self%surfaces_of(model, i)
+      surfaces = self%surfaces_of(plate, i)
       start = old%points(i)
       start%sliding%limit = self%points(i)%sliding%limit
-      tangents(:, :, i) = model%contact_area(i)*surfaces%slopes(displacement(1:3, i), start)
+      tangents(:, :, i) = plate%interfaces%contact_area(i)*surfaces%slopes(displacement(1:3, i), start)
     end do
   end function tangents_at
 
@@ -159,9 +159,9 @@ contains
   end subroutine store_tangent
 
   !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
-  pure subroutine add_dissipation_slopes(self, model, old, displacement, slopes)
+  pure subroutine add_dissipation_slopes(self, plate, old, displacement, slopes)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
@@ -171,193 +171,194 @@ contains
     integer :: i
 
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
-      if (self%cohesive(i)) slopes(1:3, i) = slopes(1:3, i) + model%contact_area(i) &
-        *dissipation_slopes(self%law_at(model, i), displacement(1:3, i), old%points(i))
+    do i = 1, plate%distribution%owned
+      if (self%cohesive(i)) slopes(1:3, i) = slopes(1:3, i) + plate%interfaces%contact_area(i) &
+        *dissipation_slopes(self%law_at(plate, i), displacement(1:3, i), old%points(i))
     end do
   end subroutine add_dissipation_slopes
 
   !> Energy dissipated since an earlier state, of the full plate, the same on every rank.
-  real(wp) function dissipation(self, model, old) result(energy)
+  real(wp) function dissipation(self, plate, old) result(energy)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces in the earlier state
     type(cohesive_interfaces_t), intent(in) :: old
 
     energy = 0
     if (.not. allocated(self%cohesive)) return
-    associate (owned => model%distribution%owned)
-      energy = model%mesh%multiplicity*total_of(model%communicator, model%contact_area(:owned) &
+    associate (owned => plate%distribution%owned)
+      energy = plate%mesh%multiplicity*total_of(plate%communicator, plate%interfaces%contact_area(:owned) &
         *(self%points(:owned)%dissipated - old%points(:owned)%dissipated))
     end associate
   end function dissipation
 
   !> Area dissipated in each zone of the full plate: sum of the points' areas times the dissipated fraction of their
   !> toughness. The same on every rank.
-  function area(self, model)
+  function area(self, plate)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The area, (zones); zero for zones without a cohesive law
-    real(wp) :: area(size(model%mesh%zones))
+    real(wp) :: area(size(plate%mesh%zones))
 
-    area = total_in_zones(self, model, self%dissipated_fractions(model))
+    area = total_in_zones(self, plate, self%dissipated_fractions(plate))
   end function area
 
   !> Energy dissipated in each zone of the full plate, the same on every rank.
-  function dissipated_energy(self, model) result(energy)
+  function dissipated_energy(self, plate) result(energy)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The energy, (zones); zero for zones without a cohesive law
-    real(wp) :: energy(size(model%mesh%zones))
+    real(wp) :: energy(size(plate%mesh%zones))
 
     energy = 0
-    if (allocated(self%cohesive)) energy = total_in_zones(self, model, self%points%dissipated)
+    if (allocated(self%cohesive)) energy = total_in_zones(self, plate, self%points%dissipated)
   end function dissipated_energy
 
   !> Sum of the areas of the cohesive points times a value, in each zone of the full plate. Collective.
-  function total_in_zones(self, model, values) result(totals)
+  function total_in_zones(self, plate, values) result(totals)
     type(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Values, (local points)
     real(wp), intent(in) :: values(:)
     !> (zones); zero for zones without a cohesive law
-    real(wp) :: totals(size(model%mesh%zones))
+    real(wp) :: totals(size(plate%mesh%zones))
     type(exact_sum_t) :: sums(size(totals))
     integer :: i
 
     totals = 0
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       ! Most values are zero.
       if (self%cohesive(i) .and. .not. abs(values(i)) <= 0) &
-        call sums(model%zone(i))%add(model%contact_area(i)*values(i))
+        call sums(plate%zone(i))%add(plate%interfaces%contact_area(i)*values(i))
     end do
-    totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
+    totals = totals_of(plate%communicator, sums)*plate%mesh%multiplicity
   end function total_in_zones
 
   !> Damage of this rank's points.
-  pure function damage(self, model)
+  pure function damage(self, plate)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> 0 to 1; 0 where there is no cohesive law, (local points)
-    real(wp) :: damage(size(model%zone))
+    real(wp) :: damage(size(plate%zone))
 
     damage = 0
     if (allocated(self%cohesive)) damage = merge(self%points%damage, 0.0_wp, self%cohesive)
   end function damage
 
   !> Dissipated fraction of the toughness at this rank's points.
-  pure function dissipated_fractions(self, model)
+  pure function dissipated_fractions(self, plate)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> 0 to 1; 0 where there is no cohesive law, (local points)
-    real(wp) :: dissipated_fractions(size(model%zone))
+    real(wp) :: dissipated_fractions(size(plate%zone))
     integer :: i
 
     dissipated_fractions = 0
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%cohesive(i)) cycle
       if (self%points(i)%damage > 0) &
-        dissipated_fractions(i) = dissipated_fraction(self%law_at(model, i), self%points(i)%damage)
+        dissipated_fractions(i) = dissipated_fraction(self%law_at(plate, i), self%points(i)%damage)
     end do
   end function dissipated_fractions
 
   !> Fraction of shear in the energy of the jumps at this rank's points.
-  pure function shear_share(self, model, displacement)
+  pure function shear_share(self, plate, displacement)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> 0 to 1; 0 where there is no cohesive law, (local points)
-    real(wp) :: shear_share(size(model%zone))
+    real(wp) :: shear_share(size(plate%zone))
     integer :: i
 
     shear_share = 0
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
-      if (self%cohesive(i)) shear_share(i) = mode_mixture(model%cohesive_laws(model%zone(i)), displacement(1:3, i))
+    do i = 1, plate%distribution%owned
+      if (self%cohesive(i)) shear_share(i) = mode_mixture(plate%interfaces%cohesive_laws(plate%zone(i)), &
+                                                          displacement(1:3, i))
     end do
   end function shear_share
 
   !> Pressure on closed surfaces at this rank's points.
-  pure function pressure(self, model, displacement)
+  pure function pressure(self, plate, displacement)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Pressure; 0 where there is no cohesive law, (local points)
-    real(wp) :: pressure(size(model%zone))
+    real(wp) :: pressure(size(plate%zone))
     integer :: i
 
     pressure = 0
     if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      if (prevents_penetration(model, model%zone(i))) &
-        pressure(i) = max(0.0_wp, -model%cohesive_laws(model%zone(i))%stiffness_opening*displacement(3, i))
+      if (prevents_penetration(plate, plate%zone(i))) &
+        pressure(i) = max(0.0_wp, -plate%interfaces%cohesive_laws(plate%zone(i))%stiffness_opening*displacement(3, i))
     end do
   end function pressure
 
   !> True if contact prevents penetration of the surfaces of a zone.
-  pure logical function prevents_penetration(model, zone)
-    class(composite_plate_t), intent(in) :: model
+  pure logical function prevents_penetration(plate, zone)
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the zone
     integer, intent(in) :: zone
 
-    prevents_penetration = model%setup%delaminations(zone)%contact /= contact_none
+    prevents_penetration = plate%setup%delaminations(zone)%contact /= contact_none
   end function prevents_penetration
 
   !> True for zones with a damaged point next to the border, where growth ends. The same on every rank.
-  function border_reached(self, model)
+  function border_reached(self, plate)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> (zones)
-    logical :: border_reached(size(model%mesh%zones))
-    real(wp) :: reached(size(model%mesh%zones))
+    logical :: border_reached(size(plate%mesh%zones))
+    real(wp) :: reached(size(plate%mesh%zones))
     integer :: i
 
     border_reached = .false.
     if (.not. allocated(self%cohesive)) return
     reached = 0
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      if (self%points(i)%damage > 0 .and. model%beside_border(i)) reached(model%zone(i)) = 1
+      if (self%points(i)%damage > 0 .and. plate%interfaces%beside_border(i)) reached(plate%zone(i)) = 1
     end do
-    call model%communicator%maximum(reached)
+    call plate%communicator%maximum(reached)
     border_reached = reached > 0
   end function border_reached
 
   !> Law of one of this rank's cohesive points. The toughness of one whose damage is held is not reached.
-  pure type(cohesive_law_t) function law_at(self, model, i) result(law)
+  pure type(cohesive_law_t) function law_at(self, plate, i) result(law)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The point
     integer, intent(in) :: i
 
-    law = weakened(model%cohesive_laws(model%zone(i)), self%strength(i), self%opening(i))
+    law = weakened(plate%interfaces%cohesive_laws(plate%zone(i)), self%strength(i), self%opening(i))
     if (.not. self%is_held) return
     law%toughness_opening = unreached*law%toughness_opening
     law%toughness_shear = unreached*law%toughness_shear
   end function law_at
 
   !> Surfaces at one of this rank's cohesive points.
-  pure type(cohesive_surfaces_t) function surfaces_of(self, model, i) result(surfaces)
+  pure type(cohesive_surfaces_t) function surfaces_of(self, plate, i) result(surfaces)
     class(cohesive_interfaces_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The point
     integer, intent(in) :: i
 
-    surfaces%law = self%law_at(model, i)
-    surfaces%closing = prevents_penetration(model, model%zone(i))
-    surfaces%friction = model%setup%delaminations(model%zone(i))%friction
+    surfaces%law = self%law_at(plate, i)
+    surfaces%closing = prevents_penetration(plate, plate%zone(i))
+    surfaces%friction = plate%setup%delaminations(plate%zone(i))%friction
   end function surfaces_of
 
   !> Saves or loads.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(cohesive_interfaces_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(self%cohesive)) return
@@ -365,9 +366,7 @@ contains
     fields(1, :) = self%points%damage
     fields(2, :) = self%points%dissipated
     fields(3:, :) = self%stiffness
-    associate (partition => model%distribution)
-      call archive%field('cohesive/points', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
-    end associate
+    call plate%visit_points(archive, 'cohesive/points', fields, area_field)
     if (.not. archive%loading) return
     self%points%damage = fields(1, :)
     self%points%dissipated = fields(2, :)

@@ -18,9 +18,9 @@ contains
 
   !> Updates the friction limits by pressures and damage. A time step uses the limits in the next step; a load step is
   !> repeated until the limits have converged.
-  subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
+  subroutine update_friction_limits(interfaces, plate, displacement, updates, converged)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Number of updates before convergence
@@ -31,65 +31,62 @@ contains
     real(wp) :: limit, largest(2)
     integer :: i
 
-    if (.not. present_in(interfaces, model)) return
+    if (.not. present_in(interfaces, plate)) return
     largest = 0
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. interfaces%cohesive(i)) cycle
-      surfaces = interfaces%surfaces_of(model, i)
+      surfaces = interfaces%surfaces_of(plate, i)
       limit = surfaces%friction_limit(displacement(1:3, i), interfaces%points(i))
       associate (before => interfaces%points(i)%sliding%limit)
         largest = max(largest, [limit, abs(limit - before)])
         before = limit
       end associate
     end do
-    if (model%setup%has_inertia()) return
-    call model%communicator%maximum(largest)
+    if (plate%setup%has_inertia()) return
+    call plate%communicator%maximum(largest)
     converged = converged .and. largest(2) <= limit_tolerance*largest(1)
     updates = updates + merge(1, 0, largest(2) > 0)
   end subroutine update_friction_limits
 
   !> True if any interface has friction.
-  pure logical function present_in(interfaces, model)
+  pure logical function present_in(interfaces, plate)
     type(cohesive_interfaces_t), intent(in) :: interfaces
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
     present_in = allocated(interfaces%cohesive)
-    if (present_in) present_in = any(model%setup%delaminations%friction > 0)
+    if (present_in) present_in = any(plate%setup%delaminations%friction > 0)
   end function present_in
 
   !> Frictional heat between two states, of the full plate, the same on every rank.
-  real(wp) function heat_since(model, old, new) result(heat)
-    class(composite_plate_t), intent(in) :: model
+  real(wp) function heat_since(plate, old, new) result(heat)
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces in both states
     type(cohesive_interfaces_t), intent(in) :: old, new
 
     heat = 0
-    if (.not. present_in(new, model)) return
-    associate (owned => model%distribution%owned)
-      heat = model%mesh%multiplicity*total_of(model%communicator, model%contact_area(:owned) &
+    if (.not. present_in(new, plate)) return
+    associate (owned => plate%distribution%owned)
+      heat = plate%mesh%multiplicity*total_of(plate%communicator, plate%interfaces%contact_area(:owned) &
         *(new%points(:owned)%sliding%heat - old%points(:owned)%sliding%heat))
     end associate
   end function heat_since
 
   !> Saves or loads.
-  subroutine visit_friction(interfaces, archive, model)
+  subroutine visit_friction(interfaces, archive, plate)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: fields(:, :)
     integer :: i
 
-    if (.not. present_in(interfaces, model)) return
+    if (.not. present_in(interfaces, plate)) return
     allocate (fields(4, size(interfaces%points)))
     do i = 1, size(fields, 2)
       associate (sliding => interfaces%points(i)%sliding)
         fields(:, i) = [sliding%slip, sliding%limit, sliding%heat]
       end associate
     end do
-    associate (partition => model%distribution)
-      call archive%field('cohesive/sliding', partition%points(:partition%owned), model%mesh%points(), fields, &
-                         vector_field)
-    end associate
+    call plate%visit_points(archive, 'cohesive/sliding', fields, vector_field)
     if (.not. archive%loading) return
     interfaces%points%sliding%limit = fields(3, :)
     interfaces%points%sliding%heat = fields(4, :)

@@ -43,51 +43,51 @@ module contact_and_ties
 contains
 
   !> All interfaces with their starters.
-  pure function new_contact_and_ties(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_contact_and_ties(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(contact_and_ties_t) :: self
     integer :: points
 
-    call create_interface_ties(model, self)
+    call create_interface_ties(plate, self)
     allocate (self%decay(size(self%regions)), source=0.0_wp)
-    if (.not. model%map%layered) return
-    points = size(model%zone)
+    if (.not. plate%map%layered) return
+    points = size(plate%zone)
     allocate (self%multiplier(points), self%pressure(points), self%slope(points), source=0.0_wp)
   end function new_contact_and_ties
 
   !> Adds contact and penalty forces to a residual and removes the residual of tied jumps.
-  subroutine add_to_residual(self, model, displacement, residual)
+  subroutine add_to_residual(self, plate, displacement, residual)
     !> The state; receives pressures and slopes
     class(contact_and_ties_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
 
-    if (.not. model%map%layered) return
-    do i = 1, model%distribution%owned
-      associate (zone => model%zone(i))
+    if (.not. plate%map%layered) return
+    do i = 1, plate%distribution%owned
+      associate (zone => plate%zone(i))
         if (zone == 0) cycle
         self%pressure(i) = 0
         self%slope(i) = 0
-        select case (self%connection(model, i))
+        select case (self%connection(plate, i))
         case (connection_exact)
           residual(1:3, i) = 0
         case (connection_contact)
-          call contact_pressure(model%contact_laws(zone), self%decay(zone), displacement(3, i), self%multiplier(i), &
-                                self%pressure(i), self%slope(i))
+          call contact_pressure(plate%interfaces%contact_laws(zone), self%decay(zone), displacement(3, i), &
+                                self%multiplier(i), self%pressure(i), self%slope(i))
         end select
-        residual(1:3, i) = residual(1:3, i) + force(self, model, i, displacement(1:3, i))
+        residual(1:3, i) = residual(1:3, i) + force(self, plate, i, displacement(1:3, i))
       end associate
     end do
   end subroutine add_to_residual
 
   !> Force of contact or a penalty tie on the jumps at a point. Pressures are those of the last residual.
-  pure function force(self, model, i, jumps)
+  pure function force(self, plate, i, jumps)
     type(contact_and_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Point of this rank
     integer, intent(in) :: i
     !> The jumps
@@ -95,18 +95,18 @@ contains
     real(wp) :: force(3)
 
     force = 0
-    select case (self%connection(model, i))
+    select case (self%connection(plate, i))
     case (connection_penalty)
-      force = -tie_stiffness(model, i)*jumps
+      force = -tie_stiffness(plate, i)*jumps
     case (connection_contact)
-      force(3) = model%contact_area(i)*self%pressure(i)
+      force(3) = plate%interfaces%contact_area(i)*self%pressure(i)
     end select
   end function force
 
   !> Updates the multipliers by the pressures found, which have converged once they are consistent with the gaps.
-  subroutine update_contact(self, model, displacement, tolerance, updates, converged)
+  subroutine update_contact(self, plate, displacement, tolerance, updates, converged)
     class(contact_and_ties_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
@@ -117,16 +117,16 @@ contains
     logical, intent(out) :: converged
     real(wp) :: mismatch
 
-    mismatch = self%complementarity(model, displacement)
+    mismatch = self%complementarity(plate, displacement)
     converged = mismatch <= tolerance
-    call update_multipliers(self, model, displacement, converged)
+    call update_multipliers(self, plate, displacement, converged)
     updates = updates + merge(1, 0, mismatch > 0)
   end subroutine update_contact
 
   !> Sets the multipliers to the pressures of the last residual, and updates the decay by the gaps.
-  subroutine update_multipliers(self, model, displacement, converged)
+  subroutine update_multipliers(self, plate, displacement, converged)
     type(contact_and_ties_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> True: the pressures agree with the gaps, the step has converged
@@ -136,40 +136,40 @@ contains
     real(wp), allocatable :: gaps(:), forces(:)
     integer :: zone
 
-    if (.not. model%map%layered) return
-    points = self%in_contact(model)
-    zones = model%zone(points)
+    if (.not. plate%map%layered) return
+    points = self%in_contact(plate)
+    zones = plate%zone(points)
     gaps = displacement(3, points)
-    forces = model%contact_area(points)*self%pressure(points)
+    forces = plate%interfaces%contact_area(points)*self%pressure(points)
     do zone = 1, size(largest)
       sums(:, zone) = [sum(forces*abs(gaps), mask=zones == zone), sum(forces, mask=zones == zone)]
       largest(zone) = maxval([0.0_wp, self%pressure(pack(points, zones == zone))])
-      call model%communicator%sum(sums(:, zone))
-      call model%communicator%maximum(largest(zone))
+      call plate%communicator%sum(sums(:, zone))
+      call plate%communicator%maximum(largest(zone))
     end do
-    self%multiplier(points) = updated_multiplier(model%contact_laws(zones), gaps, self%pressure(points))
-    self%decay = updated_decay(model%contact_laws, sums(1, :), sums(2, :), largest, converged)
+    self%multiplier(points) = updated_multiplier(plate%interfaces%contact_laws(zones), gaps, self%pressure(points))
+    self%decay = updated_decay(plate%interfaces%contact_laws, sums(1, :), sums(2, :), largest, converged)
     self%peak = max(self%peak, maxval(largest))
   end subroutine update_multipliers
 
   !> Violation of complementarity: pressure on open surfaces or negative pressure, relative to the largest pressure so
   !> far. The same on every rank.
-  real(wp) function complementarity(self, model, displacement)
+  real(wp) function complementarity(self, plate, displacement)
     class(contact_and_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     integer, allocatable :: points(:)
     real(wp) :: peak
 
     complementarity = 0
-    if (.not. model%map%layered) return
-    points = self%in_contact(model)
+    if (.not. plate%map%layered) return
+    points = self%in_contact(plate)
     peak = maxval([self%peak, self%pressure(points)])
-    complementarity = maxval([0.0_wp, contact_residual(model%contact_laws(model%zone(points)), &
+    complementarity = maxval([0.0_wp, contact_residual(plate%interfaces%contact_laws(plate%zone(points)), &
                                                        displacement(3, points), self%pressure(points))])
-    call model%communicator%maximum(complementarity)
-    call model%communicator%maximum(peak)
+    call plate%communicator%maximum(complementarity)
+    call plate%communicator%maximum(peak)
     if (peak > 0) then
       complementarity = complementarity/peak
     else
@@ -178,39 +178,39 @@ contains
   end function complementarity
 
   !> Work of contact and penalty ties in a step, of this rank's points.
-  pure real(wp) function work(self, model, displacement, change)
+  pure real(wp) function work(self, plate, displacement, change)
     class(contact_and_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns at the end of the step and their change, (5, points)
     real(wp), intent(in) :: displacement(:, :), change(:, :)
     integer :: i
 
     work = 0
-    do i = 1, model%distribution%owned
-      work = work + dot_product(force(self, model, i, displacement(1:3, i)), change(1:3, i))
+    do i = 1, plate%distribution%owned
+      work = work + dot_product(force(self, plate, i, displacement(1:3, i)), change(1:3, i))
     end do
   end function work
 
   !> Keeps closed contacts closed in the predictor, and open ones from penetrating: the stiff law would turn small
   !> errors of the predictor into large pressures.
-  subroutine keep_contact_closed(self, model, guess)
+  subroutine keep_contact_closed(self, plate, guess)
     class(contact_and_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
     integer, allocatable :: points(:)
 
-    if (.not. model%map%layered) return
+    if (.not. plate%map%layered) return
     ! Pressures are known only on the rank that owns a point.
-    points = self%in_contact(model)
+    points = self%in_contact(plate)
     guess(3, points) = merge(0.0_wp, max(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
-    call model%halo%update(guess)
+    call plate%halo%update(guess)
   end subroutine keep_contact_closed
 
   !> Stiffness that ties and contact add to the diagonal of the operator.
-  pure subroutine added_stiffness(self, model, diagonal, added)
+  pure subroutine added_stiffness(self, plate, diagonal, added)
     class(contact_and_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Diagonal of the operator without it, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
     !> Stiffness added to the three jumps, (3, points); ghosts zero
@@ -218,15 +218,15 @@ contains
     integer :: i
 
     added = 0
-    do i = 1, model%distribution%owned
-      select case (self%connection(model, i))
+    do i = 1, plate%distribution%owned
+      select case (self%connection(plate, i))
       case (connection_exact)
         added(:, i) = held_stiffness*maxval(diagonal(1:3, i))
         added(3, i) = tie_like_contact(i)
       case (connection_penalty)
-        added(:, i) = tie_stiffness(model, i)
+        added(:, i) = tie_stiffness(plate, i)
       case (connection_contact)
-        added(3, i) = -model%contact_area(i)*self%slope(i)
+        added(3, i) = -plate%interfaces%contact_area(i)*self%slope(i)
       end select
     end do
 
@@ -239,32 +239,30 @@ contains
       integer, intent(in) :: i
 
       stiffness = added(3, i)
-      associate (law => model%contact_laws(model%zone(i)))
+      associate (law => plate%interfaces%contact_laws(plate%zone(i)))
         if (law%method /= contact_augmented_lagrangian) return
-        if (model%contact_area(i)*law%stiffness >= held_stiffness*diagonal(3, i)) &
-          stiffness = model%contact_area(i)*law%stiffness
+        if (plate%interfaces%contact_area(i)*law%stiffness >= held_stiffness*diagonal(3, i)) &
+          stiffness = plate%interfaces%contact_area(i)*law%stiffness
       end associate
     end function tie_like_contact
   end subroutine added_stiffness
 
   !> Saves or loads.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(contact_and_ties_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: fields(:, :)
 
-    call self%interface_ties_t%visit(archive, model)
-    if (.not. model%map%layered) return
+    call self%interface_ties_t%visit(archive, plate)
+    if (.not. plate%map%layered) return
     call archive%item('faces/peak', self%peak)
     call archive%item('faces/decay', self%decay)
     allocate (fields(3, size(self%free)))
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (partition => model%distribution)
-      call archive%field('faces/pressures', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
-    end associate
+    call plate%visit_points(archive, 'faces/pressures', fields, area_field)
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)
     self%pressure = fields(2, :)

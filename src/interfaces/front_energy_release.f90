@@ -29,8 +29,8 @@ module front_energy_release
 contains
 
   !> Energy release rates along the front of a zone.
-  function release_along_front(model, stiffness, contact, motion, zone, method) result(front)
-    class(composite_plate_t), intent(in) :: model
+  function release_along_front(plate, stiffness, contact, motion, zone, method) result(front)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
@@ -43,19 +43,19 @@ contains
     type(front_energy_release_t) :: front
     integer :: s
 
-    front%segments = find_front(contact%regions(zone), model%mesh)
-    front%line = create_smooth_front(front%segments, model%mesh)
+    front%segments = find_front(contact%regions(zone), plate%mesh)
+    front%line = create_smooth_front(front%segments, plate%mesh)
     if (method == release_two_state) then
-      front%modes = two_state_rates(model, stiffness, motion, zone, front%segments)
+      front%modes = two_state_rates(plate, stiffness, motion, zone, front%segments)
     else
-      front%modes = vcct_rates(model, contact, motion, zone, front%segments, front%line)
+      front%modes = vcct_rates(plate, contact, motion, zone, front%segments, front%line)
     end if
-    front%ratio = [(release_ratio(model%setup%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
+    front%ratio = [(release_ratio(plate%setup%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
   end function release_along_front
 
   !> Rates by virtual crack closure, from forces and jumps averaged along the front.
-  function vcct_rates(model, contact, motion, zone, segments, line) result(modes)
-    class(composite_plate_t), intent(in) :: model
+  function vcct_rates(plate, contact, motion, zone, segments, line) result(modes)
+    type(composite_plate_t), intent(in) :: plate
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     type(motion_t), intent(in) :: motion
@@ -70,7 +70,7 @@ contains
     logical :: odd(closure_figures + 2)
     integer :: s
 
-    figures(:closure_figures, :) = moments_of(model, contact, motion, zone, segments, line)
+    figures(:closure_figures, :) = moments_of(plate, contact, motion, zone, segments, line)
     figures(closure_figures + 1, :) = line%length
     figures(closure_figures + 2, :) = line%length*line%ahead
     odd = .false.
@@ -78,7 +78,7 @@ contains
     allocate (modes(3, size(segments)), source=0.0_wp)
     do s = 1, size(segments)
       if (.not. line%length(s) > 0) cycle
-      sums = line%means(s, front_reach(model, zone), figures, odd)
+      sums = line%means(s, front_reach(plate, zone), figures, odd)
       associate (length => sums(closure_figures + 1))
         modes(:, s) = closure_rates(sums(:closure_figures), length, sums(closure_figures + 2)/length)
       end associate
@@ -86,8 +86,8 @@ contains
   end function vcct_rates
 
   !> Contributions of the nodes next to each segment to its crack closure integral. Collective.
-  function moments_of(model, contact, motion, zone, segments, line) result(figures)
-    class(composite_plate_t), intent(in) :: model
+  function moments_of(plate, contact, motion, zone, segments, line) result(figures)
+    type(composite_plate_t), intent(in) :: plate
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     type(motion_t), intent(in) :: motion
@@ -104,26 +104,26 @@ contains
     integer :: i, k
 
     allocate (figures(closure_figures, size(segments)), source=0.0_wp)
-    nodes = line%nodes_near(segments, model%mesh)
+    nodes = line%nodes_near(segments, plate%mesh)
     do k = 1, size(nodes%node)
-      i = owned_lower_point(model, zone, nodes%node(k))
+      i = owned_lower_point(plate, zone, nodes%node(k))
       if (i == 0) cycle
       ! A node on a line of symmetry has half of its force, but the full jump.
-      weight = product(merge(0.5_wp, 1.0_wp, model%mesh%lines_of(nodes%node(k)) == 0 .and. model%mesh%mirrored))
+      weight = product(merge(0.5_wp, 1.0_wp, plate%mesh%lines_of(nodes%node(k)) == 0 .and. plate%mesh%mirrored))
       associate (s => nodes%segment(k))
         figures(:, s) = figures(:, s) + nodes%share(k)*closure_moments(line%normal(:, s), nodes%distance(k), &
-          line%ahead(s), line%behind(s), .not. contact%free(i), weight, tie_force(model, motion, i), &
+          line%ahead(s), line%behind(s), .not. contact%free(i), weight, tie_force(plate, motion, i), &
           motion%displacement(1:3, i))
       end associate
     end do
     sums = reshape(figures, [size(figures)])
-    call model%communicator%sum(sums)
+    call plate%communicator%sum(sums)
     figures = reshape(sums, shape(figures))
   end function moments_of
 
   !> Force that holds the jump at a point: external less internal and inertia forces.
-  pure function tie_force(model, motion, i) result(force)
-    class(composite_plate_t), intent(in) :: model
+  pure function tie_force(plate, motion, i) result(force)
+    type(composite_plate_t), intent(in) :: plate
     type(motion_t), intent(in) :: motion
     !> Point below the interface, on the rank that owns it
     integer, intent(in) :: i
@@ -131,29 +131,29 @@ contains
     real(wp) :: force(3)
 
     force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
-    where (model%fixed(1:3, model%distribution%points(i))) force = 0
+    where (plate%constraints%fixed(1:3, plate%distribution%points(i))) force = 0
   end function tie_force
 
   !> Distance along a front over which forces and jumps are averaged.
-  pure real(wp) function front_reach(model, zone) result(reach)
-    class(composite_plate_t), intent(in) :: model
+  pure real(wp) function front_reach(plate, zone) result(reach)
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the zone
     integer, intent(in) :: zone
 
-    reach = model%setup%delaminations(zone)%smoothing
-    if (.not. reach > 0) reach = default_smoothing(model%thickness, model%mesh%mean_cell(zone))
+    reach = plate%setup%delaminations(zone)%smoothing
+    if (.not. reach > 0) reach = default_smoothing(plate%layup%thickness, plate%mesh%mean_cell(zone))
   end function front_reach
 
   !> Index of a node's point below an interface on the rank that owns it; 0: on another rank or none.
-  pure integer function owned_lower_point(model, zone, node) result(i)
-    class(composite_plate_t), intent(in) :: model
+  pure integer function owned_lower_point(plate, zone, node) result(i)
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the zone
     integer, intent(in) :: zone
     !> Node
     integer, intent(in) :: node
 
-    i = model%mesh%lower_point(node, zone)
-    if (i > 0) i = model%distribution%local(i)
-    if (i > model%distribution%owned) i = 0
+    i = plate%mesh%lower_point(node, zone)
+    if (i > 0) i = plate%distribution%local(i)
+    if (i > plate%distribution%owned) i = 0
   end function owned_lower_point
 end module front_energy_release

@@ -18,8 +18,8 @@ module front_growth
 contains
 
   !> Delaminates cells where the energy release rate exceeds its critical value.
-  subroutine grow_fronts(model, stiffness, motion, state, fracture, grown)
-    class(composite_plate_t), intent(in) :: model
+  subroutine grow_fronts(plate, stiffness, motion, state, fracture, grown)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
@@ -35,20 +35,20 @@ contains
     grown = .false.
     state%release_ratio = 0
     state%growth_ratio = 0
-    do zone = 1, size(model%mesh%zones)
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      front = release_along_front(model, stiffness, state%contact, motion, zone, &
-                                  model%setup%delaminations(zone)%energy_release)
+    do zone = 1, size(plate%mesh%zones)
+      if (plate%setup%delaminations(zone)%law == law_cohesive) cycle
+      front = release_along_front(plate, stiffness, state%contact, motion, zone, &
+                                  plate%setup%delaminations(zone)%energy_release)
       if (size(front%segments) == 0) cycle
       state%release_ratio = max(state%release_ratio, maxval(front%ratio))
-      call release_cells(model, state, zone, front, fracture, grown)
+      call release_cells(plate, state, zone, front, fracture, grown)
     end do
-    if (grown) call open_faces(model, motion, state)
+    if (grown) call open_faces(plate, motion, state)
   end subroutine grow_fronts
 
   !> Largest ratio of energy release rate to its critical value in a static analysis, where fronts do not grow.
-  subroutine find_release_ratio(model, stiffness, motion, state)
-    class(composite_plate_t), intent(in) :: model
+  subroutine find_release_ratio(plate, stiffness, motion, state)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
@@ -58,17 +58,17 @@ contains
     integer :: zone
 
     state%release_ratio = 0
-    do zone = 1, size(model%mesh%zones)
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      front = release_along_front(model, stiffness, state%contact, motion, zone, &
-                                  model%setup%delaminations(zone)%energy_release)
+    do zone = 1, size(plate%mesh%zones)
+      if (plate%setup%delaminations(zone)%law == law_cohesive) cycle
+      front = release_along_front(plate, stiffness, state%contact, motion, zone, &
+                                  plate%setup%delaminations(zone)%energy_release)
       if (size(front%segments) > 0) state%release_ratio = max(state%release_ratio, maxval(front%ratio))
     end do
   end subroutine find_release_ratio
 
   !> Delaminates the cells ahead of the most loaded segments of one front.
-  subroutine release_cells(model, state, zone, front, fracture, grown)
-    class(composite_plate_t), intent(in) :: model
+  subroutine release_cells(plate, state, zone, front, fracture, grown)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(inout) :: state
     !> Index of the zone
     integer, intent(in) :: zone
@@ -87,25 +87,25 @@ contains
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
     ! A delamination that fills its zone has no front except the border; glued surfaces cannot delaminate.
     if (foremost == 0) return
-    if (state%contact%glued .and. model%setup%delaminations(zone)%unloading == unloading_glued) return
+    if (state%contact%glued .and. plate%setup%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
     state%growth_ratio = max(state%growth_ratio, largest)
     if (.not. largest > 1) return
     enough = max(1.0_wp, together*largest)
-    if (model%setup%delaminations(zone)%growth == growth_one_per_step) enough = largest
+    if (plate%setup%delaminations(zone)%growth == growth_one_per_step) enough = largest
     enters = .not. front%segments%at_border .and. front%ratio >= enough
-    if (model%setup%delaminations(zone)%growth == growth_equilibrium) &
-      enters = enters .and. closest_to_front(front, enters, front_reach(model, zone))
+    if (plate%setup%delaminations(zone)%growth == growth_equilibrium) &
+      enters = enters .and. closest_to_front(front, enters, front_reach(plate, zone))
     do s = 1, size(front%segments)
       associate (segment => front%segments(s), region => state%contact%regions(zone))
         if (.not. enters(s)) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
-        energy = cell_energy(s)*model%mesh%multiplicity
+        energy = cell_energy(s)*plate%mesh%multiplicity
         fracture = fracture + energy
         state%contact%fracture(zone) = state%contact%fracture(zone) + energy
         grown = .true.
-        if (model%setup%delaminations(zone)%growth == growth_one_per_step) return
+        if (plate%setup%delaminations(zone)%growth == growth_one_per_step) return
       end associate
     end do
 
@@ -116,8 +116,8 @@ contains
       !> Segment
       integer, intent(in) :: s
 
-      cell_energy = critical_release_rate(model%setup%delaminations(zone), front%modes(:, s)) &
-                    *model%mesh%cell_area(front%segments(s)%outside)
+      cell_energy = critical_release_rate(plate%setup%delaminations(zone), front%modes(:, s)) &
+                    *plate%mesh%cell_area(front%segments(s)%outside)
     end function cell_energy
   end subroutine release_cells
 
@@ -148,19 +148,19 @@ contains
   end function closest_to_front
 
   !> Releases the jumps of the new delamination; surfaces under pressure start in contact.
-  subroutine open_faces(model, motion, state)
-    class(composite_plate_t), intent(in) :: model
+  subroutine open_faces(plate, motion, state)
+    type(composite_plate_t), intent(in) :: plate
     type(motion_t), intent(in) :: motion
     type(interface_state_t), intent(inout) :: state
     logical, allocatable :: before(:)
     integer :: i
 
     before = state%contact%free
-    call state%contact%free_jumps(model)
-    do i = 1, model%distribution%owned
+    call state%contact%free_jumps(plate)
+    do i = 1, plate%distribution%owned
       if (before(i) .or. .not. state%contact%free(i)) cycle
       state%contact%multiplier(i) = max(0.0_wp, (motion%internal(3, i) + motion%inertia(3, i)) &
-                                           /model%contact_area(i))
+                                           /plate%interfaces%contact_area(i))
     end do
   end subroutine open_faces
 end module front_growth

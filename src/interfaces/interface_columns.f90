@@ -4,7 +4,8 @@ module interface_columns
   use kinds, only: wp
   use interface_figures, only: figures_of, interface_figures_t
   use interface_states, only: interface_state_t
-  use plate_loads, only: loaded_plate_t
+  use composite_plates, only: composite_plate_t
+  use models, only: model_t
   use motions, only: motion_t
   use projected_areas, only: projected_areas_of
   use result_tables, only: result_row_length
@@ -58,19 +59,19 @@ module interface_columns
 contains
 
   !> Delaminated area. Collective.
-  function area_values(model, interfaces) result(values)
-    class(loaded_plate_t), intent(in) :: model
+  function area_values(plate, interfaces) result(values)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column, of the full plate
     real(wp) :: values(size(area_rows))
 
-    values = [sum(interfaces%contact%area(model)) + sum(interfaces%cohesive%area(model))]
+    values = [sum(interfaces%contact%area(plate)) + sum(interfaces%cohesive%area(plate))]
   end function area_values
 
   !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of surfaces.
   !> Collective.
-  function release_values(model, interfaces, displacement) result(values)
-    class(loaded_plate_t), intent(in) :: model
+  function release_values(plate, interfaces, displacement) result(values)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -78,23 +79,23 @@ contains
     real(wp) :: values(size(release_rows))
 
     values = [interfaces%release_ratio, sum(interfaces%ties%set_free), &
-              interfaces%contact%penetration(model, displacement), &
-              interfaces%contact%complementarity(model, displacement)]
+              interfaces%contact%penetration(plate, displacement), &
+              interfaces%contact%complementarity(plate, displacement)]
   end function release_values
 
   !> Zones whose border is reached, and projected areas. Collective.
-  function border_values(model, interfaces) result(values)
-    class(loaded_plate_t), intent(in) :: model
+  function border_values(plate, interfaces) result(values)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column
     real(wp) :: values(size(border_rows))
 
-    values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), projected_areas_of(model, interfaces)]
+    values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), projected_areas_of(plate, interfaces)]
   end function border_values
 
   !> Forces of the rigs. Collective.
   function rig_values(model, interfaces, motion, loads) result(values)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     type(motion_t), intent(in) :: motion
     !> Forces of pressure and lines at the owned points, (5, points)
@@ -106,20 +107,20 @@ contains
   end function rig_values
 
   !> Quantities of each interface, one interface after the other. Collective.
-  function interface_values(model, interfaces) result(values)
-    class(loaded_plate_t), intent(in) :: model
+  function interface_values(plate, interfaces) result(values)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column and interface
-    real(wp) :: values(size(interface_rows)*size(model%mesh%zones))
-    type(interface_figures_t) :: figures(size(model%mesh%zones))
+    real(wp) :: values(size(interface_rows)*size(plate%mesh%zones))
+    type(interface_figures_t) :: figures(size(plate%mesh%zones))
     integer :: zone
 
-    figures = figures_of(model, interfaces)
+    figures = figures_of(plate, interfaces)
     do zone = 1, size(figures)
       associate (of => figures(zone), first => (zone - 1)*size(interface_rows))
         values(first + 1:first + size(interface_rows)) = &
           [real(of%stage, wp), of%area, of%energy, of%bounds(2, :) - of%bounds(1, :), &
-           model%mesh%zone_area(zone)*model%mesh%multiplicity]
+           plate%mesh%zone_area(zone)*plate%mesh%multiplicity]
       end associate
     end do
   end function interface_values

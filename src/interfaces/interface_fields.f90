@@ -46,8 +46,8 @@ module interface_fields
 contains
 
   !> Writes the requested fields.
-  subroutine write_interface_fields(model, stiffness, interfaces, motion, output, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_interface_fields(plate, stiffness, interfaces, motion, output, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
@@ -56,54 +56,54 @@ contains
     type(fields_file_t), intent(inout) :: fields
     type(error_t), allocatable, intent(inout) :: error
 
-    if (output%requests(field_onset)) call write_onset(model, stiffness, interfaces, motion, fields, error)
-    if (.not. model%map%layered) return
+    if (output%requests(field_onset)) call write_onset(plate, stiffness, interfaces, motion, fields, error)
+    if (.not. plate%map%layered) return
     associate (contact => interfaces%contact)
-      if (output%requests(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
+      if (output%requests(field_gap)) call fields%write_point_field('jump', jumps(plate, motion%displacement), error)
       if (output%requests(field_contact_pressure)) &
-        call fields%write_point_field('contact_pressure', pressures(model, interfaces, motion%displacement), error)
+        call fields%write_point_field('contact_pressure', pressures(plate, interfaces, motion%displacement), error)
       if (output%requests(field_delamination)) then
-        call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
-        call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
-                                                              [1, size(model%zone)]), error)
-        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%dissipated_fractions(model), &
-                                                                  [1, size(model%zone)]), error)
+        call fields%write_cell_field('delaminated_above', delaminated_above(plate, interfaces), error)
+        call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(plate), &
+                                                              [1, size(plate%zone)]), error)
+        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%dissipated_fractions(plate), &
+                                                                  [1, size(plate%zone)]), error)
         call fields%write_point_field('shear_share_above', reshape(interfaces%cohesive%shear_share( &
-          model, motion%displacement), [1, size(model%zone)]), error)
-        call write_figures(model, interfaces, fields, error)
+          plate, motion%displacement), [1, size(plate%zone)]), error)
+        call write_figures(plate, interfaces, fields, error)
       end if
       if (output%requests(field_energy_release)) &
-        call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, contact, motion), error)
+        call fields%write_cell_field('energy_release_above', release_ahead(plate, stiffness, contact, motion), error)
     end associate
   end subroutine write_interface_fields
 
   !> Writes the quantities of interfaces in history and summary, for pictures at the times of the fields.
-  subroutine write_figures(model, interfaces, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_figures(plate, interfaces, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     type(fields_file_t), intent(inout) :: fields
     type(error_t), allocatable, intent(inout) :: error
-    type(interface_figures_t) :: figures(size(model%mesh%zones))
+    type(interface_figures_t) :: figures(size(plate%mesh%zones))
     real(wp) :: bounds(4, size(figures)), areas(area_rules)
     integer :: zone
 
-    figures = figures_of(model, interfaces)
+    figures = figures_of(plate, interfaces)
     do zone = 1, size(figures)
       bounds(:, zone) = reshape(figures(zone)%bounds, [4])
     end do
-    call fields%write_figures('ply_above', real(reshape(model%mesh%zones%below_ply, [1, size(figures)]), wp), error)
-    call fields%write_figures('is_cohesive', reshape(merge(1.0_wp, 0.0_wp, model%setup%delaminations%law == &
+    call fields%write_figures('ply_above', real(reshape(plate%mesh%zones%below_ply, [1, size(figures)]), wp), error)
+    call fields%write_figures('is_cohesive', reshape(merge(1.0_wp, 0.0_wp, plate%setup%delaminations%law == &
                                                            law_cohesive), [1, size(figures)]), error)
     call fields%write_figures('stage', real(reshape(figures%stage, [1, size(figures)]), wp), error)
     call fields%write_figures('area', reshape(figures%area, [1, size(figures)]), error)
     call fields%write_figures('bounds', bounds, error)
-    areas = projected_areas_of(model, interfaces)
+    areas = projected_areas_of(plate, interfaces)
     call fields%write_figures('projected_area', reshape([areas(area_dissipated)], [1, 1]), error)
   end subroutine write_figures
 
   !> Writes the onset index of delamination.
-  subroutine write_onset(model, stiffness, interfaces, motion, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_onset(plate, stiffness, interfaces, motion, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
@@ -112,27 +112,27 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: delaminated(:, :), onset(:, :)
 
-    allocate (delaminated(1, model%elements%elements), source=0.0_wp)
-    if (model%map%layered) delaminated = delaminated_above(model, interfaces)
-    onset = onset_of_elements(model, joined_stacks_of(model, stiffness, delaminated, motion%displacement))
+    allocate (delaminated(1, plate%elements%elements), source=0.0_wp)
+    if (plate%map%layered) delaminated = delaminated_above(plate, interfaces)
+    onset = onset_of_elements(plate, joined_stacks_of(plate, stiffness, delaminated, motion%displacement))
     call fields%write_cell_field('onset_index', onset(1:1, :), error)
     call fields%write_cell_field('onset_ply', onset(2:2, :), error)
   end subroutine write_onset
 
   !> Jumps at the interface above each point's layer.
-  pure function jumps(model, displacement)
-    class(composite_plate_t), intent(in) :: model
+  pure function jumps(plate, displacement)
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Jumps of u, v and w, zero in the first layer, (3, points)
     real(wp), allocatable :: jumps(:, :)
 
-    jumps = merge(displacement(1:3, :), 0.0_wp, spread(model%zone > 0, 1, 3))
+    jumps = merge(displacement(1:3, :), 0.0_wp, spread(plate%zone > 0, 1, 3))
   end function jumps
 
   !> 1 in elements whose interface above has delaminated.
-  function delaminated_above(model, interfaces) result(delaminated)
-    class(composite_plate_t), intent(in) :: model
+  function delaminated_above(plate, interfaces) result(delaminated)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> 1 or 0, with a cohesive law between them, (1, elements)
     real(wp), allocatable :: delaminated(:, :)
@@ -142,16 +142,16 @@ contains
     real(wp), allocatable :: dissipated_fractions(:, :)
     integer :: zone, i, place(2)
 
-    allocate (delaminated(1, model%elements%elements), source=0.0_wp)
-    dissipated_fractions = reshape(interfaces%cohesive%dissipated_fractions(model), [1, size(model%zone)])
-    call model%halo%update(dissipated_fractions)
-    do i = 1, model%elements%elements
-      associate (mesh => model%mesh, element => model%distribution%elements(i))
+    allocate (delaminated(1, plate%elements%elements), source=0.0_wp)
+    dissipated_fractions = reshape(interfaces%cohesive%dissipated_fractions(plate), [1, size(plate%zone)])
+    call plate%halo%update(dissipated_fractions)
+    do i = 1, plate%elements%elements
+      associate (mesh => plate%mesh, element => plate%distribution%elements(i))
         place = mesh%place_of(mesh%element_cell(element))
         do zone = 1, size(mesh%zones)
           if (.not. mesh%is_below(element, zone)) cycle
-          if (model%setup%delaminations(zone)%law == law_cohesive) then
-            delaminated(1, i) = dot_product(weights, dissipated_fractions(1, model%distribution%connectivity(:, i)))
+          if (plate%setup%delaminations(zone)%law == law_cohesive) then
+            delaminated(1, i) = dot_product(weights, dissipated_fractions(1, plate%distribution%connectivity(:, i)))
           else if (interfaces%contact%regions(zone)%is_delaminated(place(1), place(2))) then
             delaminated(1, i) = 1
           end if
@@ -161,22 +161,22 @@ contains
   end function delaminated_above
 
   !> 1 in elements whose interface on top was delaminated before the run, else 0.
-  function starters_above(model) result(starters)
-    class(composite_plate_t), intent(in) :: model
+  function starters_above(plate) result(starters)
+    type(composite_plate_t), intent(in) :: plate
     !> (elements)
     integer, allocatable :: starters(:)
     type(delaminated_region_t) :: region
     integer :: zone, i, place(2)
 
-    allocate (starters(model%elements%elements), source=0)
-    associate (mesh => model%mesh)
+    allocate (starters(plate%elements%elements), source=0)
+    associate (mesh => plate%mesh)
       do zone = 1, size(mesh%zones)
-        associate (starter => model%setup%delaminations(zone))
+        associate (starter => plate%setup%delaminations(zone))
           region = create_region(mesh, zone, starter%starter, starter%starter_strip, starter%starter_round, &
                                  starter%starter_at)
         end associate
         do i = 1, size(starters)
-          associate (element => model%distribution%elements(i))
+          associate (element => plate%distribution%elements(i))
             if (.not. mesh%is_below(element, zone)) cycle
             place = mesh%place_of(mesh%element_cell(element))
             if (region%is_delaminated(place(1), place(2))) starters(i) = 1
@@ -187,22 +187,22 @@ contains
   end function starters_above
 
   !> Contact pressure at the interface above each point's layer.
-  pure function pressures(model, interfaces, displacement)
-    class(composite_plate_t), intent(in) :: model
+  pure function pressures(plate, interfaces, displacement)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Pressure, (1, points)
     real(wp), allocatable :: pressures(:, :)
 
-    pressures = reshape(interfaces%contact%pressure + interfaces%cohesive%pressure(model, displacement), &
-                        [1, size(model%zone)])
+    pressures = reshape(interfaces%contact%pressure + interfaces%cohesive%pressure(plate, displacement), &
+                        [1, size(plate%zone)])
   end function pressures
 
   !> Ratio of energy release rate to its critical value in the intact cells ahead of the fronts, zero elsewhere. At the
   !> border of a zone it is given for the last delaminated cell.
-  function release_ahead(model, stiffness, contact, motion) result(ratio)
-    class(composite_plate_t), intent(in) :: model
+  function release_ahead(plate, stiffness, contact, motion) result(ratio)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
@@ -213,15 +213,15 @@ contains
     type(front_energy_release_t) :: front
     integer :: zone, s, element, place(2)
 
-    allocate (ratio(1, model%elements%elements), source=0.0_wp)
-    do zone = 1, size(model%mesh%zones)
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      front = release_along_front(model, stiffness, contact, motion, zone, &
-                                  model%setup%delaminations(zone)%energy_release)
+    allocate (ratio(1, plate%elements%elements), source=0.0_wp)
+    do zone = 1, size(plate%mesh%zones)
+      if (plate%setup%delaminations(zone)%law == law_cohesive) cycle
+      front = release_along_front(plate, stiffness, contact, motion, zone, &
+                                  plate%setup%delaminations(zone)%energy_release)
       do s = 1, size(front%segments)
         place = merge(front%segments(s)%inside, front%segments(s)%outside, front%segments(s)%at_border)
-        element = model%distribution%local_element(model%mesh%element_at( &
-                  model%mesh%cell_at(place(1), place(2)), model%mesh%zones(zone)%below_ply + 1))
+        element = plate%distribution%local_element(plate%mesh%element_at( &
+                  plate%mesh%cell_at(place(1), place(2)), plate%mesh%zones(zone)%below_ply + 1))
         if (element > 0) ratio(1, element) = max(ratio(1, element), front%ratio(s))
       end do
     end do

@@ -32,24 +32,24 @@ module interface_figures
 contains
 
   !> Results of all interfaces, in the order of the zones. Collective.
-  function figures_of(model, interfaces) result(figures)
-    class(composite_plate_t), intent(in) :: model
+  function figures_of(plate, interfaces) result(figures)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> (zones)
-    type(interface_figures_t) :: figures(size(model%mesh%zones))
+    type(interface_figures_t) :: figures(size(plate%mesh%zones))
     real(wp) :: bounds(4, size(figures))
     integer :: zone, axis
 
     if (size(figures) == 0) return
-    figures%stage = stages_of(model, interfaces)
-    figures%area = interfaces%contact%area(model) + interfaces%cohesive%area(model)
-    figures%energy = interfaces%contact%fracture + interfaces%cohesive%energy(model)
-    bounds = bounds_of(model, interfaces)
+    figures%stage = stages_of(plate, interfaces)
+    figures%area = interfaces%contact%area(plate) + interfaces%cohesive%area(plate)
+    figures%energy = interfaces%contact%fracture + interfaces%cohesive%energy(plate)
+    bounds = bounds_of(plate, interfaces)
     do zone = 1, size(figures)
       if (any(bounds(:, zone) <= empty_bound)) cycle
       do axis = 1, 2
         associate (both => bounds(2*axis - 1:2*axis, zone))
-          if (model%mesh%mirrored(axis) .or. model%setup%plate%symmetry == symmetry_point) both = maxval(both)
+          if (plate%mesh%mirrored(axis) .or. plate%setup%plate%symmetry == symmetry_point) both = maxval(both)
         end associate
       end do
       figures(zone)%bounds = reshape([-bounds(1, zone), bounds(2, zone), -bounds(3, zone), bounds(4, zone)], [2, 2])
@@ -57,22 +57,22 @@ contains
   end function figures_of
 
   !> Stage of failure of each interface. Collective.
-  function stages_of(model, interfaces) result(stages)
-    class(composite_plate_t), intent(in) :: model
+  function stages_of(plate, interfaces) result(stages)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> (zones)
-    integer :: stages(size(model%mesh%zones))
+    integer :: stages(size(plate%mesh%zones))
     real(wp) :: furthest(size(stages))
     integer :: i
 
     furthest = merge(stage_grown, stage_intact, interfaces%contact%fracture > 0)
     if (allocated(interfaces%cohesive%cohesive)) then
-      do i = 1, model%distribution%owned
+      do i = 1, plate%distribution%owned
         ! Starters are delaminated before the run.
         if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%contact%free(i)) cycle
-        furthest(model%zone(i)) = max(furthest(model%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
+        furthest(plate%zone(i)) = max(furthest(plate%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
       end do
-      call model%communicator%maximum(furthest)
+      call plate%communicator%maximum(furthest)
     end if
     stages = nint(furthest)
   end function stages_of
@@ -88,35 +88,35 @@ contains
 
   !> Largest -x, x, -y and y of the delamination in the modelled part: failed nodes of a cohesive law, entire cells
   !> where fronts release ties. Collective.
-  function bounds_of(model, interfaces) result(bounds)
-    class(composite_plate_t), intent(in) :: model
+  function bounds_of(plate, interfaces) result(bounds)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> (4, zones); `empty_bound` without delamination
-    real(wp) :: bounds(4, size(model%mesh%zones))
+    real(wp) :: bounds(4, size(plate%mesh%zones))
     real(wp) :: all_bounds(size(bounds))
     integer :: i, zone
 
     bounds = empty_bound
     if (allocated(interfaces%cohesive%cohesive)) then
-      do i = 1, model%distribution%owned
+      do i = 1, plate%distribution%owned
         if (.not. interfaces%cohesive%cohesive(i)) cycle
         if (interfaces%cohesive%points(i)%damage < 1) cycle
-        associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
-          bounds(:, model%zone(i)) = max(bounds(:, model%zone(i)), [-place(1), place(1), -place(2), place(2)])
+        associate (place => plate%place_of(i))
+          bounds(:, plate%zone(i)) = max(bounds(:, plate%zone(i)), [-place(1), place(1), -place(2), place(2)])
         end associate
       end do
     end if
-    do zone = 1, size(model%mesh%zones)
-      if (model%setup%delaminations(zone)%law /= law_cohesive) bounds(:, zone) = cell_bounds(model, interfaces, zone)
+    do zone = 1, size(plate%mesh%zones)
+      if (plate%setup%delaminations(zone)%law /= law_cohesive) bounds(:, zone) = cell_bounds(plate, interfaces, zone)
     end do
     all_bounds = reshape(bounds, shape(all_bounds))
-    call model%communicator%maximum(all_bounds)
+    call plate%communicator%maximum(all_bounds)
     bounds = reshape(all_bounds, shape(bounds))
   end function bounds_of
 
   !> Largest -x, x, -y and y of the delaminated cells of a zone.
-  pure function cell_bounds(model, interfaces, zone) result(bounds)
-    class(composite_plate_t), intent(in) :: model
+  pure function cell_bounds(plate, interfaces, zone) result(bounds)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> Index of the zone
     integer, intent(in) :: zone
@@ -125,7 +125,7 @@ contains
     integer :: i, j
 
     bounds = empty_bound
-    associate (region => interfaces%contact%regions(zone), columns => model%mesh%along(1), rows => model%mesh%along(2))
+    associate (region => interfaces%contact%regions(zone), columns => plate%mesh%along(1), rows => plate%mesh%along(2))
       do j = region%rows(1), region%rows(2)
         do i = region%columns(1), region%columns(2)
           if (region%is_delaminated(i, j)) bounds = max(bounds, [[-1, 1]*columns%ends(i), [-1, 1]*rows%ends(j)])

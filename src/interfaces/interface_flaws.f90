@@ -8,7 +8,7 @@ module interface_flaws
   use field_mappings, only: area_field
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use discretizations, only: discretization_t
+  use composite_plates, only: composite_plate_t
   use roundings, only: rounding
   implicit none
   private
@@ -19,9 +19,9 @@ contains
   !> Reduces the strengths of the undamaged points of an interface near cracks of a ply. With mirror symmetry the image
   !> of a cracked cell is farther away than the cell itself and need not be considered; with point symmetry cells beyond
   !> the cut are images of cells of the modelled part.
-  pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
+  pure subroutine weaken_beside(interfaces, plate, zone, cracked, reach, part)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the zone
     integer, intent(in) :: zone
     !> True for cells of the mesh in which the ply has cracked, on all ranks
@@ -32,14 +32,14 @@ contains
     real(wp), intent(in) :: part
     integer :: cell
 
-    associate (mesh => model%mesh)
+    associate (mesh => plate%mesh)
       do cell = 1, size(cracked)
         if (.not. cracked(cell)) cycle
         associate (place => mesh%place_of(cell))
           associate (x => mesh%along(1)%ends(place(1)), y => mesh%along(2)%ends(place(2)))
-            call weaken_around(interfaces, model, zone, x, y, reach, part)
+            call weaken_around(interfaces, plate, zone, x, y, reach, part)
             if (mesh%halved(1) .and. .not. mesh%mirrored(1)) &
-              call weaken_around(interfaces, model, zone, -x([2, 1]), -y([2, 1]), reach, part)
+              call weaken_around(interfaces, plate, zone, -x([2, 1]), -y([2, 1]), reach, part)
           end associate
         end associate
       end do
@@ -47,9 +47,9 @@ contains
   end subroutine weaken_beside
 
   !> Reduces the strengths of the undamaged points of an interface within a distance of a rectangle.
-  pure subroutine weaken_around(interfaces, model, zone, x, y, reach, part)
+  pure subroutine weaken_around(interfaces, plate, zone, x, y, reach, part)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the zone
     integer, intent(in) :: zone
     !> Ends of the rectangle
@@ -60,16 +60,16 @@ contains
     real(wp), intent(in) :: part
     integer :: i, j, columns(2), rows(2), node, local
 
-    associate (mesh => model%mesh)
+    associate (mesh => plate%mesh)
       columns = mesh%along(1)%nodes_near(x, (1 + rounding)*reach)
       rows = mesh%along(2)%nodes_near(y, (1 + rounding)*reach)
       do j = rows(1), rows(2)
         do i = columns(1), columns(2)
           node = mesh%node_at(i, j)
           if (mesh%lower_point(node, zone) == 0) cycle
-          local = model%distribution%local(mesh%lower_point(node, zone))
-          if (local == 0 .or. local > model%distribution%owned) cycle
-          if (model%zone(local) /= zone) cycle
+          local = plate%distribution%local(mesh%lower_point(node, zone))
+          if (local == 0 .or. local > plate%distribution%owned) cycle
+          if (plate%zone(local) /= zone) cycle
           if (interfaces%strength(local) <= part .or. interfaces%points(local)%damage > 0) cycle
           associate (place => mesh%node_coordinates(:, node))
             if (norm2([distance(place(1), x), distance(place(2), &
@@ -115,10 +115,10 @@ contains
   end function distance
 
   !> Saves or loads.
-  subroutine visit_flaws(interfaces, archive, model)
+  subroutine visit_flaws(interfaces, archive, plate)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     class(archive_t), intent(inout) :: archive
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(interfaces%strength)) return
@@ -126,9 +126,7 @@ contains
     fields(1, :) = interfaces%strength
     fields(2, :) = interfaces%opening
     fields(3, :) = merge(1.0_wp, 0.0_wp, interfaces%by_energy)
-    associate (partition => model%distribution)
-      call archive%field('cohesive/law', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
-    end associate
+    call plate%visit_points(archive, 'cohesive/law', fields, area_field)
     if (.not. archive%loading) return
     interfaces%strength = fields(1, :)
     interfaces%opening = fields(2, :)

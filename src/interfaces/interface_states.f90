@@ -4,7 +4,8 @@ module interface_states
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: growth_equilibrium
-  use plate_loads, only: loaded_plate_t
+  use composite_plates, only: composite_plate_t
+  use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
   use interface_flaws, only: visit_flaws
@@ -46,34 +47,34 @@ contains
 
   !> All interfaces with their starters.
   pure function new_interface_state(model) result(self)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     type(interface_state_t) :: self
 
-    allocate (self%border_reached(size(model%mesh%zones)), source=.false.)
-    self%contact = new_contact_and_ties(model)
-    self%ties = new_tie_release(model)
+    allocate (self%border_reached(size(model%plate%mesh%zones)), source=.false.)
+    self%contact = new_contact_and_ties(model%plate)
+    self%ties = new_tie_release(model%plate)
     self%rig = new_rig_contact(model)
-    if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%contact%free)
+    if (model%plate%map%layered) self%cohesive = new_cohesive_interfaces(model%plate, self%contact%free)
   end function new_interface_state
 
   !> Adds the forces of ties and contact to a residual and sets that of tied jumps to zero.
   subroutine add_to_residual(self, model, displacement, residual)
     class(interface_state_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
 
-    call self%ties%add_to_residual(model, residual)
-    call self%contact%add_to_residual(model, displacement, residual)
+    call self%ties%add_to_residual(model%plate, residual)
+    call self%contact%add_to_residual(model%plate, displacement, residual)
     call self%rig%add_to_residual(model, displacement, residual)
   end subroutine add_to_residual
 
   !> Sets the multipliers of surfaces and frames to the contact pressures found.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(interface_state_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
@@ -86,55 +87,55 @@ contains
     integer :: rig_updates
 
     rig_updates = updates
-    call self%contact%update_contact(model, displacement, tolerance, updates, converged)
+    call self%contact%update_contact(model%plate, displacement, tolerance, updates, converged)
     call self%rig%update_contact(model, displacement, tolerance, rig_updates, rig_converged)
     converged = converged .and. rig_converged
     updates = max(updates, rig_updates)
-    if (converged) call update_friction_limits(self%cohesive, model, displacement, updates, converged)
+    if (converged) call update_friction_limits(self%cohesive, model%plate, displacement, updates, converged)
   end subroutine update_contact
 
   !> Keeps closed contacts of surfaces and frames closed in the predictor.
   subroutine keep_contact_closed(self, model, guess)
     class(interface_state_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
 
-    call self%contact%keep_contact_closed(model, guess)
+    call self%contact%keep_contact_closed(model%plate, guess)
     call self%rig%keep_contact_closed(model, guess)
   end subroutine keep_contact_closed
 
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function contact_work(self, model, displacement, change) result(work)
     class(interface_state_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns at the end of the step and their change, (5, points)
     real(wp), intent(in) :: displacement(:, :), change(:, :)
 
     work = self%rig%work(model, change)
-    if (model%map%layered) work = work + self%contact%work(model, displacement, change)
+    if (model%plate%map%layered) work = work + self%contact%work(model%plate, displacement, change)
   end function contact_work
 
   !> Frictional heat since an earlier state, of the full plate, the same on every rank.
-  real(wp) function friction_heat(self, model, old) result(heat)
+  real(wp) function friction_heat(self, plate, old) result(heat)
     class(interface_state_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The earlier state
     class(interface_state_t), intent(in) :: old
 
-    heat = heat_since(model, old%cohesive, self%cohesive)
+    heat = heat_since(plate, old%cohesive, self%cohesive)
   end function friction_heat
 
   !> Energy recorded as fracture energy but not yet released by fronts in equilibrium, which is not an error of the
   !> integrator.
   pure real(wp) function unreleased(self, model)
     class(interface_state_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     integer :: zone
 
     unreleased = 0
     do zone = 1, size(self%border_reached)
-      if (model%setup%delaminations(zone)%growth /= growth_equilibrium) cycle
+      if (model%plate%setup%delaminations(zone)%growth /= growth_equilibrium) cycle
       unreleased = unreleased + max(0.0_wp, self%contact%fracture(zone) - self%ties%set_free(zone))
     end do
   end function unreleased
@@ -142,7 +143,7 @@ contains
   !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)
     class(interface_state_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
     !> Factor of internal forces in the operator
@@ -151,9 +152,9 @@ contains
     real(wp), intent(out) :: added(:, :)
     integer :: i
 
-    call self%contact%added_stiffness(model, diagonal, added)
+    call self%contact%added_stiffness(model%plate, diagonal, added)
     if (allocated(self%cohesive%cohesive)) then
-      do i = 1, model%distribution%owned
+      do i = 1, model%plate%distribution%owned
         if (self%cohesive%cohesive(i)) added(:, i) = stiffness_factor*self%cohesive%stiffness(:, i)
       end do
     end if
@@ -164,7 +165,7 @@ contains
   subroutine visit(self, archive, model)
     class(interface_state_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     integer, allocatable :: reached(:)
 
     call archive%item('release_ratio', self%release_ratio)
@@ -172,11 +173,11 @@ contains
     reached = merge(1, 0, self%border_reached)
     call archive%item('border_reached', reached)
     self%border_reached = reached == 1
-    call self%contact%visit(archive, model)
-    call self%ties%visit(archive, model)
-    call self%cohesive%visit(archive, model)
-    call visit_friction(self%cohesive, archive, model)
-    call visit_flaws(self%cohesive, archive, model)
+    call self%contact%visit(archive, model%plate)
+    call self%ties%visit(archive, model%plate)
+    call self%cohesive%visit(archive, model%plate)
+    call visit_friction(self%cohesive, archive, model%plate)
+    call visit_flaws(self%cohesive, archive, model%plate)
     call self%rig%visit(archive, model)
   end subroutine visit
 end module interface_states

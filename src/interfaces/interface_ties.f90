@@ -37,48 +37,48 @@ module interface_ties
 contains
 
   !> Ties of all interfaces with their starters.
-  pure subroutine create_interface_ties(model, self)
-    class(composite_plate_t), intent(in) :: model
+  pure subroutine create_interface_ties(plate, self)
+    type(composite_plate_t), intent(in) :: plate
     class(interface_ties_t), intent(inout) :: self
     integer :: zone
 
-    allocate (self%regions(size(model%mesh%zones)))
-    allocate (self%fracture(size(model%mesh%zones)), source=0.0_wp)
+    allocate (self%regions(size(plate%mesh%zones)))
+    allocate (self%fracture(size(plate%mesh%zones)), source=0.0_wp)
     do zone = 1, size(self%regions)
-      associate (starter => model%setup%delaminations(zone))
-        self%regions(zone) = create_region(model%mesh, zone, starter%starter, starter%starter_strip, &
+      associate (starter => plate%setup%delaminations(zone))
+        self%regions(zone) = create_region(plate%mesh, zone, starter%starter, starter%starter_strip, &
                                            starter%starter_round, starter%starter_at)
       end associate
     end do
-    if (.not. model%map%layered) return
-    allocate (self%free(size(model%zone)), source=.false.)
-    call self%free_jumps(model)
+    if (.not. plate%map%layered) return
+    allocate (self%free(size(plate%zone)), source=.false.)
+    call self%free_jumps(plate)
   end subroutine create_interface_ties
 
   !> Updates the free jumps: those at nodes around which all cells have delaminated.
-  pure subroutine free_jumps(self, model)
+  pure subroutine free_jumps(self, plate)
     class(interface_ties_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: i, line(2)
 
     do i = 1, size(self%free)
-      if (model%zone(i) == 0) cycle
-      line = model%mesh%lines_of(model%mesh%point_node(model%distribution%points(i)))
-      self%free(i) = self%regions(model%zone(i))%released(line(1), line(2), &
-                                                             model%mesh%zones(model%zone(i))%bonded)
+      if (plate%zone(i) == 0) cycle
+      line = plate%mesh%lines_of(plate%mesh%point_node(plate%distribution%points(i)))
+      self%free(i) = self%regions(plate%zone(i))%released(line(1), line(2), &
+                                                             plate%mesh%zones(plate%zone(i))%bonded)
     end do
   end subroutine free_jumps
 
   !> Kind of connection at a point.
-  pure integer function connection(self, model, i)
+  pure integer function connection(self, plate, i)
     class(interface_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Point of this rank
     integer, intent(in) :: i
 
     connection = connection_none
-    if (model%zone(i) == 0) return
-    associate (interface => model%setup%delaminations(model%zone(i)))
+    if (plate%zone(i) == 0) return
+    associate (interface => plate%setup%delaminations(plate%zone(i)))
       if (interface%law == law_cohesive) then
         connection = connection_cohesive
       else if (.not. self%free(i)) then
@@ -92,96 +92,96 @@ contains
   end function connection
 
   !> Stiffness of a penalty tie at a point.
-  pure real(wp) function tie_stiffness(model, i) result(stiffness)
-    class(composite_plate_t), intent(in) :: model
+  pure real(wp) function tie_stiffness(plate, i) result(stiffness)
+    type(composite_plate_t), intent(in) :: plate
     !> Point of this rank
     integer, intent(in) :: i
 
-    stiffness = model%setup%delaminations(model%zone(i))%penalty_stiffness
-    if (stiffness <= 0) stiffness = 1.0e6_wp*model%contact_laws(model%zone(i))%layer_stiffness
-    stiffness = stiffness*model%contact_area(i)
+    stiffness = plate%setup%delaminations(plate%zone(i))%penalty_stiffness
+    if (stiffness <= 0) stiffness = 1.0e6_wp*plate%interfaces%contact_laws(plate%zone(i))%layer_stiffness
+    stiffness = stiffness*plate%interfaces%contact_area(i)
   end function tie_stiffness
 
   !> Owned points with contact of surfaces.
-  pure function in_contact(self, model) result(points)
+  pure function in_contact(self, plate) result(points)
     class(interface_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Points of this rank, ascending
     integer, allocatable :: points(:)
     integer :: i
 
-    associate (owned => model%distribution%owned)
-      points = pack([(i, i=1, owned)], [(self%connection(model, i) == connection_contact, i=1, owned)])
+    associate (owned => plate%distribution%owned)
+      points = pack([(i, i=1, owned)], [(self%connection(plate, i) == connection_contact, i=1, owned)])
     end associate
   end function in_contact
 
   !> Sets the correction of tied jumps to zero.
-  pure subroutine constrain_correction(self, model, correction)
+  pure subroutine constrain_correction(self, plate, correction)
     class(interface_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Correction of the unknowns, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     integer :: i
 
-    if (.not. model%map%layered) return
+    if (.not. plate%map%layered) return
     do i = 1, size(correction, 2)
-      if (self%connection(model, i) == connection_exact) correction(1:3, i) = 0
+      if (self%connection(plate, i) == connection_exact) correction(1:3, i) = 0
     end do
   end subroutine constrain_correction
 
   !> Largest penetration of separated surfaces, the same on every rank.
-  real(wp) function penetration(self, model, displacement)
+  real(wp) function penetration(self, plate, displacement)
     class(interface_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
     integer :: i
 
     penetration = 0
-    if (.not. model%map%layered) return
-    do i = 1, model%distribution%owned
-      if (self%free(i) .or. self%connection(model, i) == connection_cohesive) &
+    if (.not. plate%map%layered) return
+    do i = 1, plate%distribution%owned
+      if (self%free(i) .or. self%connection(plate, i) == connection_cohesive) &
         penetration = max(penetration, -displacement(3, i))
     end do
-    call model%communicator%maximum(penetration)
+    call plate%communicator%maximum(penetration)
   end function penetration
 
   !> Delaminated area of each zone of the full plate where fronts release ties.
-  pure function area(self, model)
+  pure function area(self, plate)
     class(interface_ties_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The area, (zones); zero for zones with a cohesive law
     real(wp) :: area(size(self%regions))
     integer :: zone, i, j
 
     area = 0
     do zone = 1, size(self%regions)
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
+      if (plate%setup%delaminations(zone)%law == law_cohesive) cycle
       do j = self%regions(zone)%rows(1), self%regions(zone)%rows(2)
         do i = self%regions(zone)%columns(1), self%regions(zone)%columns(2)
-          if (self%regions(zone)%is_delaminated(i, j)) area(zone) = area(zone) + model%mesh%cell_area([i, j])
+          if (self%regions(zone)%is_delaminated(i, j)) area(zone) = area(zone) + plate%mesh%cell_area([i, j])
         end do
       end do
     end do
-    area = area*model%mesh%multiplicity
+    area = area*plate%mesh%multiplicity
   end function area
 
   !> Saves or loads.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(interface_ties_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: zone
 
     do zone = 1, size(self%regions)
       ! The region of a cohesive interface remains its starter.
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
+      if (plate%setup%delaminations(zone)%law == law_cohesive) cycle
       call self%regions(zone)%visit(archive, 'zone'//to_text(zone))
     end do
-    if (.not. model%map%layered) return
+    if (.not. plate%map%layered) return
     call archive%item('faces/fracture', self%fracture)
     call archive%item('faces/glued', self%glued)
-    if (archive%loading) call self%free_jumps(model)
+    if (archive%loading) call self%free_jumps(plate)
   end subroutine visit
 end module interface_ties

@@ -22,8 +22,8 @@ contains
 
   !> Stacks of a state. Layers are treated as tied in a cell if less than half of the area between them has delaminated.
   !> Collective; the same on every rank.
-  function joined_stacks_of(model, stiffness, delaminated, displacement) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function joined_stacks_of(plate, stiffness, delaminated, displacement) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated fraction of the area above each element, (1, elements)
@@ -34,9 +34,9 @@ contains
     real(wp), allocatable :: layers(:, :)
     integer :: cell, first, last, range(4)
 
-    layers = gathered(model, stiffness, delaminated, displacement)
+    layers = gathered(plate, stiffness, delaminated, displacement)
     allocate (self%plies(2, size(layers, 2)), self%force(2, size(layers, 2)), self%gradient(2, 2, size(layers, 2)))
-    associate (mesh => model%mesh)
+    associate (mesh => plate%mesh)
       do cell = 1, product(mesh%cells)
         first = mesh%first_element(cell)
         do while (first < mesh%first_element(cell + 1))
@@ -57,8 +57,8 @@ contains
   end function joined_stacks_of
 
   !> Shear forces, their derivatives and delaminated fractions of all elements of the mesh. Collective.
-  function gathered(model, stiffness, delaminated, displacement) result(everywhere)
-    class(composite_plate_t), intent(in) :: model
+  function gathered(plate, stiffness, delaminated, displacement) result(everywhere)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated fraction of the area above each element, (1, elements)
@@ -71,21 +71,21 @@ contains
     real(wp) :: strains(lanes, 9, 8)
     integer :: b, lane, i
 
-    allocate (everywhere(7, model%mesh%elements()), source=0.0_wp)
-    motion = model%motion_of(displacement)
-    do b = 1, model%elements%batches
-      call nodal_strains(model%elements, b, model%setup%mesh%kinematics, motion, strains)
-      do lane = 1, model%elements%lanes_used(b)
+    allocate (everywhere(7, plate%mesh%elements()), source=0.0_wp)
+    motion = plate%motion_of(displacement)
+    do b = 1, plate%elements%batches
+      call nodal_strains(plate%elements, b, plate%setup%mesh%kinematics, motion, strains)
+      do lane = 1, plate%elements%lanes_used(b)
         i = first_element(b) + lane - 1
-        associate (element => model%distribution%elements(i))
+        associate (element => plate%distribution%elements(i))
           everywhere(:6, element) = shear_forces(stiffness(lane, 19:21, b), strains(lane, :, 7:8), &
-            model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(element))))
+            plate%mesh%cell_sides(plate%mesh%place_of(plate%mesh%element_cell(element))))
           everywhere(7, element) = delaminated(1, i)
         end associate
       end do
     end do
     list = reshape(everywhere, [size(everywhere)])
-    call model%communicator%sum(list)
+    call plate%communicator%sum(list)
     everywhere = reshape(list, shape(everywhere))
   end function gathered
 

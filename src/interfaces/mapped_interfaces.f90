@@ -15,35 +15,35 @@ module mapped_interfaces
 contains
 
   !> Replaces the damage by the dissipated fraction of the toughness.
-  pure subroutine put_fractions(interfaces, model)
+  pure subroutine put_fractions(interfaces, plate)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
-    if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%dissipated_fractions(model)
+    if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%dissipated_fractions(plate)
   end subroutine put_fractions
 
   !> Replaces the dissipated fraction of the toughness by the damage.
-  pure subroutine set_damage(interfaces, model)
+  pure subroutine set_damage(interfaces, plate)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: i
 
     if (.not. allocated(interfaces%cohesive)) return
     do i = 1, size(interfaces%points)
       if (.not. interfaces%cohesive(i)) cycle
       associate (point => interfaces%points(i))
-        point%damage = damage_at_fraction(interfaces%law_at(model, i), point%damage)
-        interfaces%stiffness(:, i) = (1 - point%damage)*model%contact_area(i)* &
-                                     stiffness_of(model%cohesive_laws(model%zone(i)))
+        point%damage = damage_at_fraction(interfaces%law_at(plate, i), point%damage)
+        interfaces%stiffness(:, i) = (1 - point%damage)*plate%interfaces%contact_area(i)* &
+                                     stiffness_of(plate%interfaces%cohesive_laws(plate%zone(i)))
       end associate
     end do
   end subroutine set_damage
 
   !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
   !> and the elastic energy of forces above the limit would be spurious.
-  pure subroutine set_slips(interfaces, model, displacement)
+  pure subroutine set_slips(interfaces, plate, displacement)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     type(sliding_t) :: new
@@ -51,10 +51,10 @@ contains
     integer :: i
 
     if (.not. allocated(interfaces%cohesive)) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. interfaces%cohesive(i)) cycle
-      if (.not. model%setup%delaminations(model%zone(i))%friction > 0) cycle
-      associate (sliding => interfaces%points(i)%sliding, law => model%cohesive_laws(model%zone(i)))
+      if (.not. plate%setup%delaminations(plate%zone(i))%friction > 0) cycle
+      associate (sliding => interfaces%points(i)%sliding, law => plate%interfaces%cohesive_laws(plate%zone(i)))
         call friction_traction(law%stiffness_shear, displacement(1:2, i), sliding, traction, new)
         sliding%slip = new%slip
       end associate

@@ -34,23 +34,23 @@ module onset_index
 contains
 
   !> Largest index of the interfaces within each element and on top of it, and the ply above that interface.
-  pure function onset_of_elements(model, stacks) result(onset)
-    class(composite_plate_t), intent(in) :: model
+  pure function onset_of_elements(plate, stacks) result(onset)
+    type(composite_plate_t), intent(in) :: plate
     type(joined_stacks_t), intent(in) :: stacks
     !> Index and ply; both 0 without strengths, (2, elements)
     real(wp), allocatable :: onset(:, :)
     type(onset_t) :: self
     integer :: i, range(2), place
 
-    self = new_onset(model, stacks)
-    allocate (onset(2, model%elements%elements), source=0.0_wp)
+    self = new_onset(plate, stacks)
+    allocate (onset(2, plate%elements%elements), source=0.0_wp)
     do i = 1, size(onset, 2)
-      associate (element => model%distribution%elements(i))
+      associate (element => plate%distribution%elements(i))
         ! From the interface on top of the element to the one above its last ply.
-        range = model%mesh%plies_of(element) - [1, 1]
+        range = plate%mesh%plies_of(element) - [1, 1]
         range(1) = max(range(1), self%stacks%plies(1, element))
         if (range(2) < range(1)) cycle
-        associate (found => self%indices(model, element, range))
+        associate (found => self%indices(plate, element, range))
           place = maxloc(found, 1)
           if (found(place) > 0) onset(:, i) = [found(place), real(range(1) + place - 1, wp)]
         end associate
@@ -59,21 +59,21 @@ contains
   end function onset_of_elements
 
   !> Index of each interface in the cells of the mesh where it lies within one layer, 0 in the others.
-  pure function onset_of_joined_cells(model, stacks) result(onset)
-    class(composite_plate_t), intent(in) :: model
+  pure function onset_of_joined_cells(plate, stacks) result(onset)
+    type(composite_plate_t), intent(in) :: plate
     type(joined_stacks_t), intent(in) :: stacks
     !> Stress over strength, (cells of the mesh, zones)
     real(wp), allocatable :: onset(:, :)
     type(onset_t) :: self
     integer :: element, zone, below, range(2)
 
-    self = new_onset(model, stacks)
-    associate (mesh => model%mesh)
+    self = new_onset(plate, stacks)
+    associate (mesh => plate%mesh)
       allocate (onset(product(mesh%cells), size(mesh%zones)), source=0.0_wp)
       do element = 1, mesh%elements()
         range = mesh%plies_of(element) - [0, 1]
         if (.not. any(mesh%zones%below_ply >= range(1) .and. mesh%zones%below_ply <= range(2))) cycle
-        associate (found => self%indices(model, element, range))
+        associate (found => self%indices(plate, element, range))
           do zone = 1, size(mesh%zones)
             below = mesh%zones(zone)%below_ply
             if (below >= range(1) .and. below <= range(2)) &
@@ -85,28 +85,28 @@ contains
   end function onset_of_joined_cells
 
   !> Gathers the data for indices.
-  pure function new_onset(model, stacks) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_onset(plate, stacks) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(joined_stacks_t), intent(in) :: stacks
     type(onset_t) :: self
     integer :: i
 
     self%stacks = stacks
-    allocate (self%laminates(size(model%laminates)))
+    allocate (self%laminates(size(plate%layup%laminates)))
     do i = 1, size(self%laminates)
       associate (own => self%laminates(i))
-        own%stack = model%laminates(i)
-        own%values = interlaminar_strengths(own%stack%plies, own%stack%number, model%setup%materials, &
-                                            model%setup%delaminations)
+        own%stack = plate%layup%laminates(i)
+        own%values = interlaminar_strengths(own%stack%plies, own%stack%number, plate%setup%materials, &
+                                            plate%setup%delaminations)
         own%unit = unit_stresses_of(own%stack%plies)
       end associate
     end do
   end function new_onset
 
   !> Indices of the interfaces below a range of plies of an element's stack.
-  pure function indices(self, model, element, range)
+  pure function indices(self, plate, element, range)
     class(onset_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Element of the mesh
     integer, intent(in) :: element
     !> First and last ply
@@ -120,7 +120,7 @@ contains
 
     associate (first => self%stacks%plies(1, element), last => self%stacks%plies(2, element), &
                force => self%stacks%force(:, element), gradient => self%stacks%gradient(:, :, element), &
-               own => self%laminates(model%mesh%layers(model%mesh%element_layer(element))%laminate))
+               own => self%laminates(plate%mesh%layers(plate%mesh%element_layer(element))%laminate))
       if (own%stack%lies_within(first, last)) then
         all = own%unit%onset_indices(own%values, force, gradient)
         places = [1, size(own%stack%plies)]

@@ -25,8 +25,8 @@ contains
 
   !> Areas of the full plate by all rules: sums of nodal areas times the largest fraction of all interfaces at the node.
   !> All points of a node belong to one rank, so that only the sums are collective.
-  function projected_areas_of(model, interfaces) result(areas)
-    class(composite_plate_t), intent(in) :: model
+  function projected_areas_of(plate, interfaces) result(areas)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> In the order of the rules
     real(wp) :: areas(area_rules)
@@ -36,12 +36,12 @@ contains
     integer :: i, rule
 
     areas = 0
-    if (.not. model%map%layered) return
-    points = areas_of_points(model, interfaces)
+    if (.not. plate%map%layered) return
+    points = areas_of_points(plate, interfaces)
     largest = 0
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       largest = max(largest, points(:, i))
-      if (i < model%distribution%owned) then
+      if (i < plate%distribution%owned) then
         if (node_of(i + 1) == node_of(i)) cycle
       end if
       do rule = 1, area_rules
@@ -49,7 +49,7 @@ contains
       end do
       largest = 0
     end do
-    areas = totals_of(model%communicator, sums)*model%mesh%multiplicity
+    areas = totals_of(plate%communicator, sums)*plate%mesh%multiplicity
 
   contains
 
@@ -58,49 +58,49 @@ contains
       !> The point
       integer, intent(in) :: i
 
-      node_of = model%mesh%point_node(model%distribution%points(i))
+      node_of = plate%mesh%point_node(plate%distribution%points(i))
     end function node_of
   end function projected_areas_of
 
   !> Delaminated area of each point by all rules. Collective.
-  function areas_of_points(model, interfaces) result(areas)
-    class(composite_plate_t), intent(in) :: model
+  function areas_of_points(plate, interfaces) result(areas)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> (rules, local points); at the border of a zone a point of the joined layers has its part
-    real(wp) :: areas(area_rules, size(model%zone))
-    real(wp) :: fractions(area_rules, size(model%zone)), damage(size(model%zone))
+    real(wp) :: areas(area_rules, size(plate%zone))
+    real(wp) :: fractions(area_rules, size(plate%zone)), damage(size(plate%zone))
     integer :: i
 
     areas = 0
-    if (any(model%setup%delaminations%law /= law_cohesive)) &
-      areas = spread(areas_of_fronts(model, interfaces), 1, area_rules)
+    if (any(plate%setup%delaminations%law /= law_cohesive)) &
+      areas = spread(areas_of_fronts(plate, interfaces), 1, area_rules)
     ! A point has the cohesive interface below it only.
-    damage = interfaces%cohesive%damage(model)
-    fractions(area_dissipated, :) = interfaces%cohesive%dissipated_fractions(model)
+    damage = interfaces%cohesive%damage(plate)
+    fractions(area_dissipated, :) = interfaces%cohesive%dissipated_fractions(plate)
     fractions(area_failed, :) = merge(1.0_wp, 0.0_wp, damage >= failed_from)
     fractions(area_softened, :) = merge(1.0_wp, 0.0_wp, damage >= softened_from)
-    do i = 1, model%distribution%owned
-      if (model%zone(i) > 0) areas(:, i) = max(areas(:, i), fractions(:, i)*model%contact_area(i))
+    do i = 1, plate%distribution%owned
+      if (plate%zone(i) > 0) areas(:, i) = max(areas(:, i), fractions(:, i)*plate%interfaces%contact_area(i))
     end do
   end function areas_of_points
 
   !> Largest part of delaminated cells at each point, of all zones in which fronts release ties. Collective.
-  function areas_of_fronts(model, interfaces) result(areas)
-    class(composite_plate_t), intent(in) :: model
+  function areas_of_fronts(plate, interfaces) result(areas)
+    type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
     !> (local points)
-    real(wp) :: areas(size(model%zone))
-    real(wp) :: field(1, model%borders%columns)
+    real(wp) :: areas(size(plate%zone))
+    real(wp) :: field(1, plate%borders%columns)
     integer :: zone, i
 
     areas = 0
-    do zone = 1, size(model%mesh%zones)
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
+    do zone = 1, size(plate%mesh%zones)
+      if (plate%setup%delaminations(zone)%law == law_cohesive) cycle
       field = 0
-      call add_patch_weights(model%elements, pack([(i, i=1, model%elements%elements)], &
-                                                  [(in_delaminated_cell(i), i=1, model%elements%elements)]), &
+      call add_patch_weights(plate%elements, pack([(i, i=1, plate%elements%elements)], &
+                                                  [(in_delaminated_cell(i), i=1, plate%elements%elements)]), &
                              field(1, :))
-      call model%borders%add(field)
+      call plate%borders%add(field)
       areas = max(areas, field(1, :size(areas)))
     end do
 
@@ -112,7 +112,7 @@ contains
       integer, intent(in) :: i
       integer :: place(2)
 
-      associate (mesh => model%mesh, element => model%distribution%elements(i))
+      associate (mesh => plate%mesh, element => plate%distribution%elements(i))
         in_delaminated_cell = mesh%is_below(element, zone)
         if (.not. in_delaminated_cell) return
         place = mesh%place_of(mesh%element_cell(element))

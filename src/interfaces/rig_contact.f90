@@ -10,7 +10,7 @@ module rig_contact
   use exact_sums, only: exact_sum_t
   use rank_totals, only: totals_of
   use surface_contact, only: contact_pressure, contact_residual, updated_multiplier
-  use plate_loads, only: loaded_plate_t
+  use models, only: model_t
   use support_parameters, only: max_supports
   implicit none
   private
@@ -42,7 +42,7 @@ contains
   !> Initial state: the plate in contact with its frames without pressure, except for the reaction of clamps with a
   !> force. Slopes are those of contact, so that frames support it from the first step.
   pure function new_rig_contact(model) result(self)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     type(rig_contact_t) :: self
 
     if (.not. model%rig%unilateral) return
@@ -56,19 +56,19 @@ contains
 
   !> Owned points on unilateral frames.
   pure function on_frame(model) result(points)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Points of this rank, ascending
     integer, allocatable :: points(:)
     integer :: i
 
-    points = pack([(i, i=1, model%distribution%owned)], model%rig%frame(:model%distribution%owned) > 0)
+    points = pack([(i, i=1, model%plate%distribution%owned)], model%rig%frame(:model%plate%distribution%owned) > 0)
   end function on_frame
 
   !> Adds the pressure's forces to a residual.
   pure subroutine add_to_residual(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(rig_contact_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Residual at the owned points, (5, points)
@@ -76,7 +76,7 @@ contains
     integer :: i
 
     if (.not. model%rig%unilateral) return
-    do i = 1, model%distribution%owned
+    do i = 1, model%plate%distribution%owned
       if (model%rig%frame(i) == 0) cycle
       call contact_pressure(model%rig_law, 0.0_wp, -displacement(3, i), self%multiplier(i), self%pressure(i), &
                             self%slope(i))
@@ -90,7 +90,7 @@ contains
   !> Adds the forces of springs and of clamps with a force to internal forces, and their stored energy.
   pure subroutine add_springs(self, model, displacement, force, energy)
     class(rig_contact_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Internal forces at the owned points, (5, points)
@@ -100,7 +100,7 @@ contains
     integer :: i
 
     if (.not. model%rig%elastic) return
-    do i = 1, model%distribution%owned
+    do i = 1, model%plate%distribution%owned
       force(1:3, i) = force(1:3, i) + model%rig%springs(:, i)*displacement(1:3, i)
       energy = energy + dot_product(model%rig%springs(:, i), displacement(1:3, i)**2)/2
       force(3, i) = force(3, i) - model%rig%clamp_preload(i)
@@ -111,7 +111,7 @@ contains
   !> Sets the multipliers to the pressures found; they have converged once they agree with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(rig_contact_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
@@ -128,8 +128,8 @@ contains
     points = on_frame(model)
     largest = maxval([0.0_wp, self%pressure(points)])
     mismatch = maxval([0.0_wp, contact_residual(model%rig_law, -displacement(3, points), self%pressure(points))])
-    call model%communicator%maximum(largest)
-    call model%communicator%maximum(mismatch)
+    call model%plate%communicator%maximum(largest)
+    call model%plate%communicator%maximum(mismatch)
     self%peak = max(self%peak, largest)
     if (self%peak > 0) converged = mismatch <= tolerance*self%peak
     self%multiplier(points) = updated_multiplier(model%rig_law, -displacement(3, points), self%pressure(points))
@@ -139,7 +139,7 @@ contains
   !> Work of the pressure in a step, of this rank's points.
   pure real(wp) function work(self, model, change)
     class(rig_contact_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Change of the unknowns, (5, points)
     real(wp), intent(in) :: change(:, :)
 
@@ -153,7 +153,7 @@ contains
   !> Keeps closed contacts closed in the predictor, and open ones from penetrating.
   subroutine keep_contact_closed(self, model, guess)
     class(rig_contact_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
     integer, allocatable :: points(:)
@@ -161,13 +161,13 @@ contains
     if (.not. model%rig%unilateral) return
     points = on_frame(model)
     guess(3, points) = merge(0.0_wp, min(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
-    call model%halo%update(guess)
+    call model%plate%halo%update(guess)
   end subroutine keep_contact_closed
 
   !> Adds the stiffness of frames and clamps to that of the diagonal.
   pure subroutine add_stiffness(self, model, stiffness_factor, added)
     class(rig_contact_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Factor of internal forces in the operator
     real(wp), intent(in) :: stiffness_factor
     !> Stiffness added to u, v and w, (3, points); ghosts zero
@@ -178,8 +178,8 @@ contains
     if (.not. (model%rig%unilateral .or. model%rig%elastic)) return
     open = 0
     ! An iteration of load steps may lift the plate off all its frames, so that nothing supports it.
-    if (.not. model%setup%has_inertia()) open = model%negligible_stiffness()
-    do i = 1, model%distribution%owned
+    if (.not. model%plate%setup%has_inertia()) open = model%plate%negligible_stiffness()
+    do i = 1, model%plate%distribution%owned
       added(:, i) = added(:, i) + stiffness_factor*model%rig%springs(:, i)
       if (model%rig%frame(i) > 0) added(3, i) = added(3, i) + model%rig_area(i)*max(-self%slope(i), open)
     end do
@@ -189,7 +189,7 @@ contains
   !> constrained w, pressure on its frame, and springs of its clamps. The same on every rank.
   function reactions(self, model, displacement, internal, inertia, loads)
     class(rig_contact_t), intent(in) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Unknowns, internal forces and inertia forces at the owned points, (5, points)
     real(wp), intent(in) :: displacement(:, :), internal(:, :), inertia(:, :)
     !> Forces of pressure and lines at the owned points, (5, points)
@@ -205,7 +205,7 @@ contains
       reactions = self%found
       return
     end if
-    do i = 1, model%distribution%owned
+    do i = 1, model%plate%distribution%owned
       associate (constrained_by => model%rig%constrained_by(i), frame => model%rig%frame(i), &
                  clamps => model%rig%clamps(i))
         if (constrained_by > 0) then
@@ -223,14 +223,14 @@ contains
                            *dot_product(model%rig%line_weights(:, i), displacement(3, model%rig%line_points(:, i))))
       end associate
     end do
-    reactions = totals_of(model%communicator, sums)*model%mesh%multiplicity
+    reactions = totals_of(model%plate%communicator, sums)*model%plate%mesh%multiplicity
   end function reactions
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
     class(rig_contact_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 
     if (.not. model%rig%unilateral) return
@@ -239,9 +239,7 @@ contains
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (partition => model%distribution)
-      call archive%field('rig/pressures', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
-    end associate
+    call model%plate%visit_points(archive, 'rig/pressures', fields, area_field)
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)
     self%pressure = fields(2, :)

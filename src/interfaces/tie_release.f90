@@ -38,8 +38,8 @@ module tie_release
 contains
 
   !> No tie has been released.
-  pure function new_tie_release(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_tie_release(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(tie_release_t) :: self
     !> Number of elements that a shear wave crosses while the force of a released tie decreases to zero. With 10 the
     !> energy released is the same within a few per cent for all shorter steps. With 5 and 20 the force history changes
@@ -48,37 +48,37 @@ contains
     real(wp) :: slowness
     integer :: points, zones, zone, i
 
-    zones = size(model%mesh%zones)
+    zones = size(plate%mesh%zones)
     allocate (self%set_free(zones), self%duration(zones), source=0.0_wp)
-    if (.not. model%map%layered) return
-    points = size(model%zone)
+    if (.not. plate%map%layered) return
+    points = size(plate%zone)
     allocate (self%force(3, points), self%remaining(points), source=0.0_wp)
     slowness = 0
-    do i = 1, size(model%laminates)
-      associate (plies => model%laminates(i)%plies)
+    do i = 1, size(plate%layup%laminates)
+      associate (plies => plate%layup%laminates(i)%plies)
         slowness = max(slowness, sqrt(minval(plies%density/max(plies%elasticity%g13, plies%elasticity%g23))))
       end associate
     end do
     do zone = 1, zones
-      self%duration(zone) = elements_crossed*model%mesh%mean_cell(zone)*slowness
+      self%duration(zone) = elements_crossed*plate%mesh%mean_cell(zone)*slowness
     end do
   end function new_tie_release
 
   !> Releases the ties whose jumps have become free. Where surfaces are under pressure, contact, if it is modelled,
   !> carries the normal force at once, so that only the shear forces are ramped down.
-  pure subroutine release(self, model, free_before, free, forces)
+  pure subroutine release(self, plate, free_before, free, forces)
     class(tie_release_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
     !> Forces that held the jumps, (3, local points)
     real(wp), intent(in) :: forces(:, :)
     integer :: i
 
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
       self%force(:, i) = forces(:, i)
-      if (model%setup%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
+      if (plate%setup%delaminations(plate%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
       self%remaining(i) = 1
     end do
     self%left = maxval(self%duration)
@@ -86,10 +86,10 @@ contains
 
   !> Energy released by the first opening of newly released ties, after the step was repeated without them. Opening by
   !> cells released later in the same step is attributed to these.
-  function first_opening(self, model, free_before, free, opening) result(energy)
+  function first_opening(self, plate, free_before, free, opening) result(energy)
     !> The ties at the end of the step
     class(tie_release_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
     !> Jumps, (5, points)
@@ -99,28 +99,28 @@ contains
     integer :: i
 
     energy = 0
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
-      associate (zone => model%zone(i))
+      associate (zone => plate%zone(i))
         energy(zone) = energy(zone) - (1 - self%remaining(i))/2*dot_product(self%force(:, i), opening(1:3, i))
       end associate
     end do
-    call model%communicator%sum(energy)
-    energy = energy*model%mesh%multiplicity
+    call plate%communicator%sum(energy)
+    energy = energy*plate%mesh%multiplicity
   end function first_opening
 
   !> Reduces the forces over a step.
-  pure subroutine ramp_down(self, model, step)
+  pure subroutine ramp_down(self, plate, step)
     class(tie_release_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Time step
     real(wp), intent(in) :: step
     integer :: i
 
     if (.not. self%left > 0) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. self%remaining(i) > 0) cycle
-      associate (duration => self%duration(model%zone(i)))
+      associate (duration => self%duration(plate%zone(i)))
         if (step < self%remaining(i)*duration) then
           self%remaining(i) = self%remaining(i) - step/duration
         else
@@ -133,15 +133,15 @@ contains
   end subroutine ramp_down
 
   !> Adds the forces to a residual.
-  pure subroutine add_to_residual(self, model, residual)
+  pure subroutine add_to_residual(self, plate, residual)
     class(tie_release_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
 
     if (.not. self%left > 0) return
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (self%remaining(i) > 0) residual(1:3, i) = residual(1:3, i) + self%remaining(i)*self%force(:, i)
     end do
   end subroutine add_to_residual
@@ -149,10 +149,10 @@ contains
   !> Records the work against the forces in a step: that of the step with the force at its end, and the energy released
   !> with the mean of the forces at its start and end. For ties released in this step the difference is that of
   !> `first_opening`.
-  subroutine record(self, model, old, change, taken)
+  subroutine record(self, plate, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The ties at its start
     type(tie_release_t), intent(in) :: old
     !> Change of the unknowns, (5, points)
@@ -165,36 +165,34 @@ contains
     taken = 0
     if (.not. old%left > 0) return
     sums = 0
-    do i = 1, model%distribution%owned
+    do i = 1, plate%distribution%owned
       if (.not. old%remaining(i) > 0) cycle
       work = -dot_product(self%force(:, i), change(1:3, i))
       sums(1) = sums(1) + self%remaining(i)*work
       mean = (old%remaining(i) + self%remaining(i))/2
       if (old%remaining(i) >= 1) mean = self%remaining(i)
-      sums(1 + model%zone(i)) = sums(1 + model%zone(i)) + mean*work
+      sums(1 + plate%zone(i)) = sums(1 + plate%zone(i)) + mean*work
     end do
-    call model%communicator%sum(sums)
-    sums = sums*model%mesh%multiplicity
+    call plate%communicator%sum(sums)
+    sums = sums*plate%mesh%multiplicity
     taken = sums(1)
     self%set_free = self%set_free + sums(2:)
   end subroutine record
 
   !> Saves or loads.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(tie_release_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: fields(:, :)
 
-    if (.not. model%map%layered) return
+    if (.not. plate%map%layered) return
     call archive%item('ties/set_free', self%set_free)
     call archive%item('ties/left', self%left)
     allocate (fields(4, size(self%remaining)))
     fields(:3, :) = self%force
     fields(4, :) = self%remaining
-    associate (partition => model%distribution)
-      call archive%field('ties/forces', partition%points(:partition%owned), model%mesh%points(), fields, vector_field)
-    end associate
+    call plate%visit_points(archive, 'ties/forces', fields, vector_field)
     if (.not. archive%loading) return
     self%force = fields(:3, :)
     self%remaining = fields(4, :)

@@ -26,8 +26,8 @@ module two_state_energy_release
 contains
 
   !> Rates of the segments of a front.
-  function two_state_rates(model, section_stiffness, motion, zone, segments) result(modes)
-    class(composite_plate_t), intent(in) :: model
+  function two_state_rates(plate, section_stiffness, motion, zone, segments) result(modes)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
@@ -42,16 +42,16 @@ contains
     n = size(segments)
     allocate (modes(3, n), source=0.0_wp)
     allocate (values(180*n), source=0.0_wp)
-    call front_states(model, section_stiffness, model%motion_of(motion%displacement), segments, &
-                      front_elements(model, zone, segments), values(:96*n), values(96*n + 1:))
-    call model%communicator%sum(values)
-    modes(2, :) = rates_of_states(model, segments, reshape(values(:96*n), [8, 3, 2, 2, n]), &
+    call front_states(plate, section_stiffness, plate%motion_of(motion%displacement), segments, &
+                      front_elements(plate, zone, segments), values(:96*n), values(96*n + 1:))
+    call plate%communicator%sum(values)
+    modes(2, :) = rates_of_states(plate, segments, reshape(values(:96*n), [8, 3, 2, 2, n]), &
                                   reshape(values(96*n + 1:), [21, 2, 2, n]))
   end function two_state_rates
 
   !> Energy release rates of the segments from the states at their nodes.
-  function rates_of_states(model, segments, found, stiffness) result(rates)
-    class(composite_plate_t), intent(in) :: model
+  function rates_of_states(plate, segments, found, stiffness) result(rates)
+    type(composite_plate_t), intent(in) :: plate
     type(front_segment_t), intent(in) :: segments(:)
     !> Extrapolated strains, (8, 3 nodes, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: found(:, :, :, :, :)
@@ -71,7 +71,7 @@ contains
           known = stiffness(:, layer, merge(1, side, segments(s)%at_border), s)
           do line = 1, 3
             states(:, line, layer, side, s) = &
-              converted_strains(symmetric(model, segments(s)%edge(line), found(:, line, layer, side, s)), known, &
+              converted_strains(symmetric(plate, segments(s)%edge(line), found(:, line, layer, side, s)), known, &
                            common(:, layer, s), segments(s)%direction)
           end do
         end do
@@ -103,8 +103,8 @@ contains
 
   !> Strains without the components that vanish on a line of symmetry, as their mean from both sides does on the full
   !> plate.
-  pure function symmetric(model, node, strains)
-    class(composite_plate_t), intent(in) :: model
+  pure function symmetric(plate, node, strains)
+    type(composite_plate_t), intent(in) :: plate
     !> Node
     integer, intent(in) :: node
     !> Strains at the node
@@ -115,8 +115,8 @@ contains
 
     symmetric = strains
     do direction = 1, 2
-      if (.not. model%mesh%mirrored(direction)) cycle
-      if (abs(model%mesh%node_coordinates(direction, node)) > 0) cycle
+      if (.not. plate%mesh%mirrored(direction)) cycle
+      if (abs(plate%mesh%node_coordinates(direction, node)) > 0) cycle
       symmetric([3, 6, 6 + direction]) = 0
     end do
   end function symmetric
@@ -149,8 +149,8 @@ contains
 
   !> Elements above and below the interface on the delaminated and the intact side of every segment, as numbered on this
   !> rank; 0: on another rank.
-  pure function front_elements(model, zone, segments) result(elements)
-    class(composite_plate_t), intent(in) :: model
+  pure function front_elements(plate, zone, segments) result(elements)
+    type(composite_plate_t), intent(in) :: plate
     !> Index of the zone
     integer, intent(in) :: zone
     type(front_segment_t), intent(in) :: segments(:)
@@ -159,12 +159,12 @@ contains
     integer :: s, side, layer, cells(2)
 
     do s = 1, size(segments)
-      cells = [model%mesh%cell_at(segments(s)%inside(1), segments(s)%inside(2)), &
-               model%mesh%cell_at(segments(s)%outside(1), segments(s)%outside(2))]
+      cells = [plate%mesh%cell_at(segments(s)%inside(1), segments(s)%inside(2)), &
+               plate%mesh%cell_at(segments(s)%outside(1), segments(s)%outside(2))]
       do side = 1, 2
         do layer = 1, 2
-          elements(layer, side, s) = model%distribution%local_element( &
-                                     model%mesh%element_at(cells(side), model%mesh%zones(zone)%below_ply + layer - 1))
+          elements(layer, side, s) = plate%distribution%local_element( &
+                                     plate%mesh%element_at(cells(side), plate%mesh%zones(zone)%below_ply + layer - 1))
         end do
       end do
     end do
@@ -172,8 +172,8 @@ contains
 
   !> Strains of the elements along a front at the three nodes of their segments, and their stiffness; zero for elements
   !> of other ranks. Every batch is computed once.
-  subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
-    class(composite_plate_t), intent(in) :: model
+  subroutine front_states(plate, section_stiffness, field, segments, elements, strains, stiffness)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion of every layer, (5, points)
@@ -191,12 +191,12 @@ contains
     batches = merge(batch_of(elements), 0, elements > 0)
     do e = 1, size(elements)
       if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
-      call nodal_strains(model%elements, batches(e), model%setup%mesh%kinematics, field, at_nodes)
+      call nodal_strains(plate%elements, batches(e), plate%setup%mesh%kinematics, field, at_nodes)
       do same = e, size(elements)
         if (batches(same) /= batches(e)) cycle
         s = 1 + (same - 1)/4
         lane = lane_of(elements(same))
-        nodes = model%mesh%cell_nodes(model%mesh%element_cell(model%distribution%elements(elements(same))))
+        nodes = plate%mesh%cell_nodes(plate%mesh%element_cell(plate%distribution%elements(elements(same))))
         do line = 1, 3
           strains(:, line, same) = at_nodes(lane, findloc(nodes, segments(s)%edge(line), dim=1), :)
         end do

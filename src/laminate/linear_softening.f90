@@ -4,7 +4,8 @@ module linear_softening
   use ply_damage_parameters, only: fibre_tension
   implicit none
   private
-  public :: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by, weights_of_signs
+  public :: softening_t, linear_softening_of, more_damaged, damage_at, damage_on_curve, dissipated_by, &
+            fraction_growth, weights_of_signs
 
   !> Smallest ratio N of failure strain to onset strain: at 1 the stress would drop at once, and a longer element would
   !> snap back. At 1.25 the softening modulus is four times the elastic modulus. The check warns that such elements
@@ -73,17 +74,25 @@ contains
     softening%energy = softening%ratio*(energy/exposure**2)
   end function linear_softening_of
 
-  !> Damage of a softening law: d = N (f - 1)/(f (N - 1)).
+  !> Damage of a softening law.
   pure real(wp) function damage_at(softening) result(damage)
     type(softening_t), intent(in) :: softening
 
-    damage = 0
-    if (softening%exposure >= softening%ratio) then
-      damage = 1
-    else if (softening%exposure > 1) then
-      damage = min(1.0_wp, softening%ratio*(softening%exposure - 1)/(softening%exposure*(softening%ratio - 1)))
-    end if
+    damage = damage_on_curve(softening%exposure, softening%ratio)
   end function damage_at
+
+  !> Damage between onset and failure: d = N (x - 1)/(x (N - 1)).
+  pure real(wp) function damage_on_curve(x, ratio) result(damage)
+    !> Strain or jump over that at the onset, and N, its value at failure
+    real(wp), intent(in) :: x, ratio
+
+    damage = 0
+    if (x >= ratio) then
+      damage = 1
+    else if (x > 1) then
+      damage = min(1.0_wp, ratio*(x - 1)/(x*(ratio - 1)))
+    end if
+  end function damage_on_curve
 
   !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
   pure real(wp) function dissipated_by(softening, part, damage_from, damage_to) result(energy)
@@ -97,7 +106,7 @@ contains
     if (damage_to > damage_from) energy = part*softening%energy*fraction_growth(softening%ratio, damage_from, damage_to)
   end function dissipated_by
 
-  !> Increment of the dissipated fraction d/(N (1 - d) + d) with the damage, without cancellation.
+  !> Increment of the dissipated fraction d/(N (1 - d) + d) with the damage, without cancellation for small increments.
   pure real(wp) function fraction_growth(ratio, damage_from, damage_to) result(growth)
     !> N
     real(wp), intent(in) :: ratio

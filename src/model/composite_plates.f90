@@ -1,14 +1,24 @@
-!> The plate of composite: its discretization with plies and interfaces, without loads. Plies, interfaces and results
-!> that need no more of a model take it.
+!> The plate of composite on this rank: mesh, points, elements, plies and interfaces, without loads. All are constant in
+!> a run; new layers require a new one.
 module composite_plates
-  use cohesive_laws, only: cohesive_law_t
-  use discretizations, only: discretization_t
+  use archives, only: archive_t
+  use border_sums, only: border_sum_t
+  use communicators, only: communicator_t
+  use distributions, only: distribution_t
+  use element_batches, only: element_batches_t
+  use field_mappings, only: field_mapping_t
+  use halos, only: halo_t
+  use interface_laws, only: interface_laws_t
   use kinds, only: wp
+  use layer_maps, only: layer_map_t
+  use layered_meshes, only: layered_mesh_t
+  use layups, only: layup_t
+  use load_vectors, only: add_patch_weights
   use mathematical_constants, only: pi
-  use ply_stacks, only: ply_stack_t
+  use plate_constraints, only: constraints_t
+  use profiles, only: profile_t
   use setups, only: setup_t
-  use stacking, only: section_t
-  use surface_contact, only: contact_law_t
+  use struck_points, only: struck_point_t
   implicit none
   private
   public :: composite_plate_t
@@ -17,37 +27,105 @@ module composite_plates
   !> residuals, the corrections of elastic modes are then exact to a thousandth.
   real(wp), parameter :: negligible_share = 1.0e-3_wp
 
-  !> A discretization with the setup, laminates and laws of interfaces of its plate. It has many components because it
-  !> has those of the discretization.
-  type, extends(discretization_t) :: composite_plate_t
+  !> The plate, distributed over ranks.
+  type :: composite_plate_t
     !> The setup of the deck
     type(setup_t) :: setup
-    !> Number of plies, those of doublers included
-    integer :: plies = 0
-    !> The different laminates of the plate, the skin's first
-    type(ply_stack_t), allocatable :: laminates(:)
-    !> The different stacks of elements, one for each layer of the mesh
-    type(ply_stack_t), allocatable :: stacks(:)
-    !> Stack of each of this rank's elements, (elements)
-    integer, allocatable :: stack(:)
-    !> Section of the full laminate, and the same with the bending moduli of plies with E1c
-    type(section_t) :: section, bending_section
-    !> Thickness of the laminate
-    real(wp) :: thickness = 0
-    !> Resultants of the thermal strains of undamaged plies, and their energy per area, (lanes, 7, batches); allocated
-    !> only if they are modelled
-    real(wp), allocatable :: free(:, :, :)
-    !> Area of each point of a lower layer, (local points)
-    real(wp), allocatable :: contact_area(:)
-    !> Contact of each zone's surfaces
-    type(contact_law_t), allocatable :: contact_laws(:)
-    !> Cohesive law of each zone; not used where fronts release ties
-    type(cohesive_law_t), allocatable :: cohesive_laws(:)
+    !> The ranks
+    type(communicator_t) :: communicator
+    !> Profile of time and memory, if requested
+    type(profile_t) :: profile
+    !> Complete mesh of the modelled part, on every rank
+    type(layered_mesh_t) :: mesh
+    !> Its constrained unknowns
+    type(constraints_t) :: constraints
+    !> Laminates, and stacks of the elements
+    type(layup_t) :: layup
+    !> Distribution over ranks
+    type(distribution_t) :: distribution
+    !> Exchange of ghost points
+    type(halo_t) :: halo
+    !> Sums of elements' contributions to points on the borders between ranks: a field assembled by `elements` has
+    !> `borders%columns` columns and is summed by `borders%add`, before forces are transformed to unknowns
+    type(border_sum_t) :: borders
+    !> This rank's elements
+    type(element_batches_t) :: elements
+    !> Motion of stacked layers from their unknowns
+    type(layer_map_t) :: map
+    !> Zone of each of this rank's points; 0: first layer
+    integer, allocatable :: zone(:)
+    !> Laws and areas of the interfaces
+    type(interface_laws_t) :: interfaces
+    !> The struck point
+    type(struck_point_t) :: struck
   contains
+    procedure :: place_of
+    procedure :: motion_of
+    procedure :: deflection
+    procedure :: product => field_product
+    procedure :: nodal_areas
     procedure :: negligible_stiffness
+    procedure :: visit_points
   end type composite_plate_t
 
 contains
+
+  !> Coordinates of one of this rank's points from the plate's centre.
+  pure function place_of(self, point) result(place)
+    class(composite_plate_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: point
+    real(wp) :: place(2)
+
+    place = self%mesh%node_coordinates(:, self%mesh%point_node(self%distribution%points(point)))
+  end function place_of
+
+  !> Motion of every layer from the unknowns.
+  pure function motion_of(self, unknowns) result(motion)
+    class(composite_plate_t), intent(in) :: self
+    !> Unknowns, (5, points)
+    real(wp), contiguous, intent(in) :: unknowns(:, :)
+    !> Motion of each point's layer, (5, points)
+    real(wp), allocatable :: motion(:, :)
+
+    motion = unknowns
+    if (self%map%layered) call self%map%to_motion(motion)
+  end function motion_of
+
+  !> Deflection at the struck point, the same on every rank.
+  real(wp) function deflection(self, displacement) result(w)
+    class(composite_plate_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    w = 0
+    if (self%struck%point > 0) w = displacement(3, self%struck%point)
+    call self%communicator%sum(w)
+  end function deflection
+
+  !> Product of two fields summed over the owned points of this rank only.
+  pure real(wp) function field_product(self, left, right) result(total)
+    class(composite_plate_t), intent(in) :: self
+    !> The fields, (5, points)
+    real(wp), intent(in) :: left(:, :), right(:, :)
+
+    total = sum(left(:, :self%distribution%owned)*right(:, :self%distribution%owned))
+  end function field_product
+
+  !> Nodal areas of some of this rank's elements. Collective.
+  function nodal_areas(self, elements) result(areas)
+    class(composite_plate_t), intent(in) :: self
+    !> Positions among this rank's elements
+    integer, intent(in) :: elements(:)
+    !> (local points); ghosts zero
+    real(wp), allocatable :: areas(:)
+    real(wp) :: field(1, self%borders%columns)
+
+    field = 0
+    call add_patch_weights(self%elements, elements, field(1, :))
+    call self%borders%add(field)
+    areas = field(1, :self%halo%points)
+  end function nodal_areas
 
   !> Stiffness per area that is negligible in an operator but keeps it from being singular (doc/theory/newton.md,
   !> assumptions): a small fraction of that of the plate's lowest bending wave, D (pi/L)^4 with the smaller bending
@@ -55,7 +133,21 @@ contains
   pure real(wp) function negligible_stiffness(self) result(stiffness)
     class(composite_plate_t), intent(in) :: self
 
-    stiffness = negligible_share*min(self%section%stiffness(13), self%section%stiffness(16)) &
+    stiffness = negligible_share*min(self%layup%section%stiffness(13), self%layup%section%stiffness(16)) &
                 *(pi/maxval(self%setup%plate%length))**4
   end function negligible_stiffness
+
+  !> Saves or loads values at the points.
+  subroutine visit_points(self, archive, name, values, mapping)
+    class(composite_plate_t), intent(in) :: self
+    class(archive_t), intent(inout) :: archive
+    !> Name within the archive
+    character(len=*), intent(in) :: name
+    !> (any, local points); those of ghosts are not changed
+    real(wp), intent(inout) :: values(:, :)
+    !> How they are mapped to another mesh
+    type(field_mapping_t), intent(in) :: mapping
+
+    call archive%field(name, self%distribution%points(:self%distribution%owned), self%mesh%points(), values, mapping)
+  end subroutine visit_points
 end module composite_plates

@@ -3,21 +3,32 @@
 module models
   use kinds, only: wp
   use bending_forces, only: add_bending_force, add_bending_inertia
+  use composite_plates, only: composite_plate_t
   use contact_areas, only: contact_area_t
   use contact_patches, only: contact_patch_t
   use inertia_forces, only: add_inertia_force
   use internal_forces, only: add_internal_force
-  use plate_loads, only: loaded_plate_t
-  use rig_models, only: hold_openings
+  use plate_loads, only: plate_loads_t
+  use rig_models, only: hold_openings, rig_model_t
   use section_laws, only: section_law_t
+  use surface_contact, only: contact_law_t
   implicit none
   private
   public :: model_t
 
-  !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run. It has many components
-  !> because it has those of the loaded plate. A module that needs a part of it takes that part: discretization_t,
-  !> composite_plate_t or loaded_plate_t.
-  type, extends(loaded_plate_t) :: model_t
+  !> Model on this rank's part of the mesh, which is constant in a run. A procedure that needs a part of it takes that
+  !> part.
+  type :: model_t
+    !> The plate
+    type(composite_plate_t) :: plate
+    !> Pressure and lines
+    type(plate_loads_t) :: loads
+    !> Supports by rigs
+    type(rig_model_t) :: rig
+    !> Area of each node, (local points); allocated only with a unilateral frame
+    real(wp), allocatable :: rig_area(:)
+    !> Contact with that frame
+    type(contact_law_t) :: rig_law
     !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if requested
     real(wp), allocatable :: lumped(:, :)
     !> True if layers, frames or clamps add stiffness to the operator's diagonal
@@ -28,8 +39,6 @@ module models
     type(contact_area_t), allocatable :: nose
   contains
     procedure :: internal
-    procedure, private :: add_elements
-    procedure, private :: add_inertia
     procedure :: inertia
     procedure :: held_unknowns
   end type model_t
@@ -42,8 +51,10 @@ contains
     !> u, v, w, theta_x, theta_y of every point of the mesh, (5, points)
     logical, allocatable :: held(:, :)
 
-    held = self%fixed
-    if (allocated(self%setup%supports)) call hold_openings(self%mesh, self%setup%plate, self%setup%supports, held)
+    held = self%plate%constraints%fixed
+    associate (setup => self%plate%setup)
+      if (allocated(setup%supports)) call hold_openings(self%plate%mesh, setup%plate, setup%supports, held)
+    end associate
   end function held_unknowns
 
   !> Internal forces at the owned points and strain energy of this rank's elements.
@@ -64,23 +75,23 @@ contains
 
     real(wp), allocatable :: field(:, :)
 
-    if (self%borders%columns > size(force, 2)) then
-      allocate (field(5, self%borders%columns), source=0.0_wp)
-      call self%add_elements(stiffness, displacement, field, energy, law, free)
-      call self%borders%add(field)
+    if (self%plate%borders%columns > size(force, 2)) then
+      allocate (field(5, self%plate%borders%columns), source=0.0_wp)
+      call add_elements(self%plate, stiffness, displacement, field, energy, law, free)
+      call self%plate%borders%add(field)
       force = field(:, :size(force, 2))
     else
       force = 0
-      call self%add_elements(stiffness, displacement, force, energy, law, free)
-      call self%borders%add(force)
+      call add_elements(self%plate, stiffness, displacement, force, energy, law, free)
+      call self%plate%borders%add(force)
     end if
-    if (self%map%layered) call self%map%to_unknowns(force)
+    if (self%plate%map%layered) call self%plate%map%to_unknowns(force)
     call self%rig%add_line_forces(displacement, force, energy)
   end subroutine internal
 
   !> Adds the internal forces of this rank's elements on the motion of their layers.
-  subroutine add_elements(self, stiffness, displacement, field, energy, law, free)
-    class(model_t), intent(in) :: self
+  subroutine add_elements(plate, stiffness, displacement, field, energy, law, free)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
@@ -94,14 +105,14 @@ contains
     !> Resultants of stress-free strains, and their energy per area, (lanes, 7, batches); absent: none
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
-    if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%setup%mesh%kinematics, self%motion_of(displacement), &
+    if (plate%map%layered) then
+      call add_internal_force(plate%elements, stiffness, plate%setup%mesh%kinematics, plate%motion_of(displacement), &
                               field, energy, law, free)
-    else if (self%membrane_idle) then
-      call add_bending_force(self%elements, stiffness, displacement, field, energy)
+    else if (plate%constraints%membrane_idle) then
+      call add_bending_force(plate%elements, stiffness, displacement, field, energy)
     else
-      call add_internal_force(self%elements, stiffness, self%setup%mesh%kinematics, displacement, field, energy, law, &
-                              free)
+      call add_internal_force(plate%elements, stiffness, plate%setup%mesh%kinematics, displacement, field, energy, &
+                              law, free)
     end if
   end subroutine add_elements
 
@@ -115,43 +126,43 @@ contains
     real(wp), allocatable :: forces(:, :)
     integer :: point
 
-    call self%profile%enter('inertia forces')
+    call self%plate%profile%enter('inertia forces')
     force = 0
     if (allocated(self%lumped)) then
-      force = self%motion_of(field)
-      force(:, self%distribution%owned + 1:) = 0
-      do point = 1, self%distribution%owned
+      force = self%plate%motion_of(field)
+      force(:, self%plate%distribution%owned + 1:) = 0
+      do point = 1, self%plate%distribution%owned
         associate (mass => self%lumped(:, point), value => force(:, point))
           value = [mass(1)*value(1:2) + mass(2)*value(4:5), mass(1)*value(3), mass(2)*value(1:2) + mass(3)*value(4:5)]
         end associate
       end do
-    else if (self%borders%columns > size(force, 2)) then
-      allocate (forces(5, self%borders%columns), source=0.0_wp)
-      call self%add_inertia(field, forces)
-      call self%borders%add(forces)
+    else if (self%plate%borders%columns > size(force, 2)) then
+      allocate (forces(5, self%plate%borders%columns), source=0.0_wp)
+      call add_inertia(self%plate, field, forces)
+      call self%plate%borders%add(forces)
       force = forces(:, :size(force, 2))
     else
-      call self%add_inertia(field, force)
-      call self%borders%add(force)
+      call add_inertia(self%plate, field, force)
+      call self%plate%borders%add(force)
     end if
-    if (self%map%layered) call self%map%to_unknowns(force)
-    call self%profile%leave()
+    if (self%plate%map%layered) call self%plate%map%to_unknowns(force)
+    call self%plate%profile%leave()
   end subroutine inertia
 
   !> Adds the consistent mass of this rank's elements times a field, on the motion of their layers.
-  subroutine add_inertia(self, field, force)
-    class(model_t), intent(in) :: self
+  subroutine add_inertia(plate, field, force)
+    type(composite_plate_t), intent(in) :: plate
     !> Acceleration or velocity, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: field(:, :)
     !> Product, (5, columns)
     real(wp), contiguous, intent(inout) :: force(:, :)
 
-    if (self%map%layered) then
-      call add_inertia_force(self%elements, self%motion_of(field), force)
-    else if (self%membrane_idle) then
-      call add_bending_inertia(self%elements, field, force)
+    if (plate%map%layered) then
+      call add_inertia_force(plate%elements, plate%motion_of(field), force)
+    else if (plate%constraints%membrane_idle) then
+      call add_bending_inertia(plate%elements, field, force)
     else
-      call add_inertia_force(self%elements, field, force)
+      call add_inertia_force(plate%elements, field, force)
     end if
   end subroutine add_inertia
 end module models

@@ -3,7 +3,7 @@ module motion_fields
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
-  use discretizations, only: discretization_t
+  use composite_plates, only: composite_plate_t
   use motions, only: motion_t
   use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity
   use result_tables, only: result_row_length
@@ -24,18 +24,18 @@ module motion_fields
 contains
 
   !> Writes the requested fields.
-  subroutine write_motion_fields(model, motion, output, fields, error)
-    class(discretization_t), intent(in) :: model
+  subroutine write_motion_fields(plate, motion, output, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     type(motion_t), intent(in) :: motion
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: layers(:, :)
 
-    layers = model%motion_of(motion%displacement)
+    layers = plate%motion_of(motion%displacement)
     if (output%requests(field_displacement)) call fields%write_point_field('displacement', layers(1:3, :), error)
     if (output%requests(field_rotation)) call fields%write_point_field('rotation', layers(4:5, :), error)
-    layers = model%motion_of(motion%velocity)
+    layers = plate%motion_of(motion%velocity)
     if (output%requests(field_velocity)) call fields%write_point_field('velocity', layers(1:3, :), error)
   end subroutine write_motion_fields
 end module motion_fields

@@ -24,8 +24,8 @@ module placed_gauges
 contains
 
   !> Strains of all gauges, the same on every rank. Collective.
-  function gauge_strains(model, displacement) result(strains)
-    class(composite_plate_t), intent(in) :: model
+  function gauge_strains(plate, displacement) result(strains)
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> One per gauge
@@ -35,14 +35,14 @@ contains
     integer :: i
 
     allocate (strains(0))
-    if (.not. allocated(model%setup%plate%gauges)) return
-    if (size(model%setup%plate%gauges) == 0) return
-    allocate (sums(size(model%setup%plate%gauges)))
-    motion = model%motion_of(displacement)
+    if (.not. allocated(plate%setup%plate%gauges)) return
+    if (size(plate%setup%plate%gauges) == 0) return
+    allocate (sums(size(plate%setup%plate%gauges)))
+    motion = plate%motion_of(displacement)
     do i = 1, size(sums)
-      call add_strain(model, model%setup%plate%gauges(i), motion, sums(i))
+      call add_strain(plate, plate%setup%plate%gauges(i), motion, sums(i))
     end do
-    strains = totals_of(model%communicator, sums)
+    strains = totals_of(plate%communicator, sums)
   end function gauge_strains
 
   !> The first two gauges back to back: at one point and angle on the front and on the back; 0: there are none.
@@ -74,8 +74,8 @@ contains
 
   !> Adds the strain of a gauge: that of its cell, or the mean over the cells that meet there. Only cells of this rank
   !> contribute.
-  subroutine add_strain(model, gauge, motion, total)
-    class(composite_plate_t), intent(in) :: model
+  subroutine add_strain(plate, gauge, motion, total)
+    type(composite_plate_t), intent(in) :: plate
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -85,27 +85,27 @@ contains
     integer, allocatable :: columns(:), rows(:)
     integer :: element, cell, i, j
 
-    call find_place(model, gauge, at, angle)
+    call find_place(plate, gauge, at, angle)
     direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
-    columns = model%mesh%along(1)%touching(at(1))
-    rows = model%mesh%along(2)%touching(at(2))
+    columns = plate%mesh%along(1)%touching(at(1))
+    rows = plate%mesh%along(2)%touching(at(2))
     do j = 1, size(rows)
       do i = 1, size(columns)
-        cell = columns(i) + (rows(j) - 1)*model%mesh%cells(1)
-        element = model%mesh%first_element(cell)
-        if (gauge%face == face_back) element = model%mesh%first_element(cell + 1) - 1
-        element = findloc(model%distribution%elements, element, dim=1)
+        cell = columns(i) + (rows(j) - 1)*plate%mesh%cells(1)
+        element = plate%mesh%first_element(cell)
+        if (gauge%face == face_back) element = plate%mesh%first_element(cell + 1) - 1
+        element = findloc(plate%distribution%elements, element, dim=1)
         if (element == 0) cycle
-        call total%add(dot_product(direction, surface_strain(model, gauge, motion, element, &
-          [part_of(model%mesh%along(1)%ends(columns(i)), at(1)), part_of(model%mesh%along(2)%ends(rows(j)), at(2))]))/ &
+        call total%add(dot_product(direction, surface_strain(plate, gauge, motion, element, &
+          [part_of(plate%mesh%along(1)%ends(columns(i)), at(1)), part_of(plate%mesh%along(2)%ends(rows(j)), at(2))]))/ &
           (size(columns)*size(rows)))
       end do
     end do
   end subroutine add_strain
 
   !> Strain of a surface in an element.
-  function surface_strain(model, gauge, motion, element, place) result(strain)
-    class(composite_plate_t), intent(in) :: model
+  function surface_strain(plate, gauge, motion, element, place) result(strain)
+    type(composite_plate_t), intent(in) :: plate
     !> The gauge, on one of the surfaces
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
@@ -118,18 +118,18 @@ contains
     real(wp) :: strain(3)
     real(wp) :: all(lanes, 9, 8), shape(4), mean(6), z
 
-    call nodal_strains(model%elements, batch_of(element), model%setup%mesh%kinematics, motion, all)
+    call nodal_strains(plate%elements, batch_of(element), plate%setup%mesh%kinematics, motion, all)
     shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
     mean = matmul(shape, all(lane_of(element), corners, :6))
-    associate (plies => model%stacks(model%stack(element))%plies)
+    associate (plies => plate%layup%stacks(plate%layup%stack(element))%plies)
       z = merge(plies(size(plies))%z_bottom, plies(1)%z_top, gauge%face == face_back)
     end associate
     strain = mean(1:3) + z*mean(4:6)
   end function surface_strain
 
   !> Position of a gauge or its image in the modelled part, and its direction there.
-  pure subroutine find_place(model, gauge, at, angle)
-    class(composite_plate_t), intent(in) :: model
+  pure subroutine find_place(plate, gauge, at, angle)
+    type(composite_plate_t), intent(in) :: plate
     type(gauge_t), intent(in) :: gauge
     !> The point
     real(wp), intent(out) :: at(2)
@@ -139,9 +139,9 @@ contains
 
     at = gauge%at
     angle = gauge%angle
-    if (model%mesh%halved(1) .and. .not. model%mesh%mirrored(1) .and. at(1) < 0) at = -at
+    if (plate%mesh%halved(1) .and. .not. plate%mesh%mirrored(1) .and. at(1) < 0) at = -at
     do k = 1, 2
-      if (.not. (model%mesh%mirrored(k) .and. at(k) < 0)) cycle
+      if (.not. (plate%mesh%mirrored(k) .and. at(k) < 0)) cycle
       at(k) = -at(k)
       angle = -angle
     end do

@@ -1,39 +1,29 @@
-!> Loads and supports of the plate at its points: pressure, lines, rigs, constant in a run.
+!> Loads of the plate at its points: pressure and lines, constant in a run.
 module plate_loads
-  use composite_plates, only: composite_plate_t
-  use surface_contact, only: contact_law_t
   use kinds, only: wp
   use placed_lines, only: placed_line_t
-  use rig_models, only: rig_model_t
   implicit none
   private
-  public :: loaded_plate_t
+  public :: plate_loads_t
 
-  !> A plate with its supports and loads. It has many components because it has those of the plate.
-  type, extends(composite_plate_t) :: loaded_plate_t
+  !> Pressure and lines.
+  type :: plate_loads_t
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
     !> Lines; empty: none
     type(placed_line_t), allocatable :: lines(:)
-    !> Supports by rigs
-    type(rig_model_t) :: rig
-    !> Area of each node, (local points); allocated only with a unilateral frame
-    real(wp), allocatable :: rig_area(:)
-    !> Contact with that frame
-    type(contact_law_t) :: rig_law
   contains
-    !> Forces of the lines, loads of a static analysis, and their change with the load factor.
     procedure :: line_forces
     procedure :: add_holding_lines
     procedure :: static_loads
     procedure :: load_slopes
-  end type loaded_plate_t
+  end type plate_loads_t
 
 contains
 
   !> Nodal forces of the lines at the owned points, of all of them or of those that are prescribed or not.
   pure subroutine line_forces(self, displacement, load_factor, forces, prescribed)
-    class(loaded_plate_t), intent(in) :: self
+    class(plate_loads_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Ramps over their full values
@@ -55,7 +45,7 @@ contains
 
   !> Adds the nodal forces that hold prescribed lines at zero displacement.
   pure subroutine add_holding_lines(self, displacement, forces)
-    class(loaded_plate_t), intent(in) :: self
+    class(plate_loads_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Forces on the unknowns of the owned points, (5, points)
@@ -69,7 +59,7 @@ contains
 
   !> Nodal loads of a static analysis: pressure and lines, at the owned points.
   pure subroutine static_loads(self, displacement, load_factor, loads)
-    class(loaded_plate_t), intent(in) :: self
+    class(plate_loads_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Ramps over their full values
@@ -83,7 +73,7 @@ contains
 
   !> Change of these loads with the load factor.
   pure subroutine load_slopes(self, loads)
-    class(loaded_plate_t), intent(in) :: self
+    class(plate_loads_t), intent(in) :: self
     !> Forces on the unknowns, (5, points); ghosts zero
     real(wp), intent(out) :: loads(:, :)
     integer :: i

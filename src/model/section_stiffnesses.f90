@@ -4,7 +4,7 @@ module section_stiffnesses
   use kinds, only: wp
   use archives, only: archive_t
   use element_batches, only: batch_of, lane_of
-  use discretizations, only: discretization_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: visit_stiffness
@@ -12,20 +12,20 @@ module section_stiffnesses
 contains
 
   !> Saves or loads a section stiffness.
-  subroutine visit_stiffness(archive, name, model, stiffness)
+  subroutine visit_stiffness(archive, name, plate, stiffness)
     class(archive_t), intent(inout) :: archive
     !> Name of the item
     character(len=*), intent(in) :: name
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of this rank's elements, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
-    real(wp) :: values(21, model%elements%elements)
+    real(wp) :: values(21, plate%elements%elements)
     integer :: element
 
     do element = 1, size(values, 2)
       values(:, element) = stiffness(lane_of(element), :, batch_of(element))
     end do
-    call archive%field(name, model%distribution%elements, model%mesh%elements(), values, area_field)
+    call archive%field(name, plate%distribution%elements, plate%mesh%elements(), values, area_field)
     do element = 1, size(values, 2)
       stiffness(lane_of(element), :, batch_of(element)) = values(:, element)
     end do

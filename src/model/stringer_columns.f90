@@ -25,8 +25,8 @@ module stringer_columns
 contains
 
   !> Values of all stringers, the same on every rank. Collective.
-  function stringer_values(model, displacement) result(values)
-    class(composite_plate_t), intent(in) :: model
+  function stringer_values(plate, displacement) result(values)
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Those of the first, then those of the next
@@ -35,22 +35,22 @@ contains
     integer :: i
 
     allocate (values(0))
-    if (.not. allocated(model%setup%stringers)) return
-    if (size(model%setup%stringers) == 0) return
-    ranges = ranges_of(model, displacement)
+    if (.not. allocated(plate%setup%stringers)) return
+    if (size(plate%setup%stringers) == 0) return
+    ranges = ranges_of(plate, displacement)
     values = [(merge(ranges(1, i), -ranges(2, i), ranges(1, i) >= ranges(2, i)), i=1, size(ranges, 2))]
   end function stringer_values
 
   !> First stringer whose strain at the free edge exceeds its strength; 0: none. Collective.
-  integer function weakest_stringer(model, displacement) result(weakest)
-    class(composite_plate_t), intent(in) :: model
+  integer function weakest_stringer(plate, displacement) result(weakest)
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp), allocatable :: ranges(:, :)
 
-    ranges = ranges_of(model, displacement)
-    do weakest = 1, size(model%setup%stringers)
-      associate (allowed => model%setup%stringers(weakest)%failure_strains)
+    ranges = ranges_of(plate, displacement)
+    do weakest = 1, size(plate%setup%stringers)
+      associate (allowed => plate%setup%stringers(weakest)%failure_strains)
         if (any(allowed > 0 .and. ranges(:, columns*weakest) > allowed)) return
       end associate
     end do
@@ -58,8 +58,8 @@ contains
   end function weakest_stringer
 
   !> Largest value of each column, and largest value with the other sign; at least 0. Collective.
-  function ranges_of(model, displacement) result(ranges)
-    class(composite_plate_t), intent(in) :: model
+  function ranges_of(plate, displacement) result(ranges)
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (sign, column)
@@ -68,27 +68,27 @@ contains
     real(wp) :: r(lanes, 9, 5)
     integer :: b, k, i
 
-    allocate (ranges(2, columns*size(model%setup%stringers)), source=0.0_wp)
-    motion = model%motion_of(displacement)
-    if (allocated(model%elements%beams)) then
-      do b = 1, model%elements%batches
-        if (.not. model%elements%has_beams(b)) cycle
-        call gather(model%elements%points(:, :, b), motion, r)
-        do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-          i = columns*(model%elements%beams(k)%stringer - 1)
+    allocate (ranges(2, columns*size(plate%setup%stringers)), source=0.0_wp)
+    motion = plate%motion_of(displacement)
+    if (allocated(plate%elements%beams)) then
+      do b = 1, plate%elements%batches
+        if (.not. plate%elements%has_beams(b)) cycle
+        call gather(plate%elements%points(:, :, b), motion, r)
+        do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
+          i = columns*(plate%elements%beams(k)%stringer - 1)
           call widen(ranges(:, i + 1:i + columns), &
-                     resultants(model, k, strains_of_beam(model%elements, k, model%setup%mesh%kinematics, r)))
+                     resultants(plate, k, strains_of_beam(plate%elements, k, plate%setup%mesh%kinematics, r)))
         end do
       end do
     end if
     flat = reshape(ranges, [size(ranges)])
-    call model%communicator%maximum(flat)
+    call plate%communicator%maximum(flat)
     ranges = reshape(flat, shape(ranges))
   end function ranges_of
 
   !> Columns of a beam at its three points.
-  pure function resultants(model, k, strains) result(values)
-    class(composite_plate_t), intent(in) :: model
+  pure function resultants(plate, k, strains) result(values)
+    type(composite_plate_t), intent(in) :: plate
     !> Number of the beam
     integer, intent(in) :: k
     !> Its strains
@@ -96,8 +96,8 @@ contains
     !> (column, point)
     real(wp) :: values(columns, 3)
 
-    associate (section => model%setup%stringers(model%elements%beams(k)%stringer)%section, &
-               outwards => model%elements%beams(k)%outwards)
+    associate (section => plate%setup%stringers(plate%elements%beams(k)%stringer)%section, &
+               outwards => plate%elements%beams(k)%outwards)
       values(1, :) = section%axial*strains(axial_row:axial_row + 2)
       values(2, :) = section%bending*strains(bending_row:bending_row + 2)
       values(3, :) = section%torsion*strains(twist_row:twist_row + 2)

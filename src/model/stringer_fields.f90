@@ -30,27 +30,27 @@ module stringer_fields
 contains
 
   !> Writes them if there are stringers.
-  subroutine write_stringer_fields(model, displacement, output, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_stringer_fields(plate, displacement, output, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: values(columns, model%elements%elements)
+    real(wp) :: values(columns, plate%elements%elements)
     integer :: i
 
-    if (.not. allocated(model%setup%stringers)) return
-    if (size(model%setup%stringers) == 0 .or. .not. output%requests(field_displacement)) return
-    call find_values(model, displacement, values)
+    if (.not. allocated(plate%setup%stringers)) return
+    if (size(plate%setup%stringers) == 0 .or. .not. output%requests(field_displacement)) return
+    call find_values(plate, displacement, values)
     do i = 1, columns
       call fields%write_cell_field(trim(names(i)), values(i:i, :), error)
     end do
   end subroutine write_stringer_fields
 
   !> The largest value in magnitude at each of this rank's elements.
-  subroutine find_values(model, displacement, values)
-    class(composite_plate_t), intent(in) :: model
+  subroutine find_values(plate, displacement, values)
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (column, element)
@@ -60,13 +60,13 @@ contains
     integer :: b, k, i
 
     values = 0
-    motion = model%motion_of(displacement)
-    do b = 1, model%elements%batches
-      if (.not. model%elements%has_beams(b)) cycle
-      call gather(model%elements%points(:, :, b), motion, r)
-      do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-        found = resultants(model, k, strains_of_beam(model%elements, k, model%setup%mesh%kinematics, r))
-        associate (value => values(:, first_element(b) + model%elements%beams(k)%lane - 1))
+    motion = plate%motion_of(displacement)
+    do b = 1, plate%elements%batches
+      if (.not. plate%elements%has_beams(b)) cycle
+      call gather(plate%elements%points(:, :, b), motion, r)
+      do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
+        found = resultants(plate, k, strains_of_beam(plate%elements, k, plate%setup%mesh%kinematics, r))
+        associate (value => values(:, first_element(b) + plate%elements%beams(k)%lane - 1))
           do i = 1, 3
             where (abs(found(:, i)) > abs(value)) value = found(:, i)
           end do

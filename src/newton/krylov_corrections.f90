@@ -54,7 +54,7 @@ contains
       end if
       if (allocated(error)) return
       call numbering%scatter(solution, correction)
-      call tangent%model%halo%update(correction)
+      call tangent%model%plate%halo%update(correction)
     end associate
   end subroutine find_krylov_correction
 
@@ -86,7 +86,7 @@ contains
     end if
     converged = .false.
     indefinite = .false.
-    if (.not. krylov%defined) call krylov%define(tangent%model%communicator, size(rows), &
+    if (.not. krylov%defined) call krylov%define(tangent%model%plate%communicator, size(rows), &
                                                  trim(merge('cg    ', 'fgmres', tangent%softens)), error)
     if (allocated(error)) return
     call krylov%solve(tangent, row_factors, rows, tolerance, solution, error)

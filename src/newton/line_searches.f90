@@ -6,7 +6,7 @@
 !> plate, so a search with a changing active set would end at each contact.
 module line_searches
   use kinds, only: wp
-  use discretizations, only: discretization_t
+  use composite_plates, only: composite_plate_t
   use solution_controls, only: newton_controls_t
   implicit none
   private
@@ -40,9 +40,9 @@ module line_searches
 contains
 
   !> Starts a search along a correction. Collective.
-  subroutine begin(self, model, start, direction, residual, smooth, contact_stiffness, negative_curvature)
+  subroutine begin(self, plate, start, direction, residual, smooth, contact_stiffness, negative_curvature)
     class(line_search_t), intent(inout) :: self
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement before the correction, and the correction, (5, points)
     real(wp), intent(in) :: start(:, :), direction(:, :)
     !> Residual at the owned points, and without contacts and ties, (5, points)
@@ -53,11 +53,11 @@ contains
     logical, intent(in) :: negative_curvature
     real(wp) :: sums(3)
 
-    associate (owned => model%distribution%owned)
-      sums = [model%product(direction, residual), model%product(direction, smooth), &
+    associate (owned => plate%distribution%owned)
+      sums = [plate%product(direction, residual), plate%product(direction, smooth), &
               sum(contact_stiffness(:, :owned)*direction(:3, :owned)**2)]
     end associate
-    call model%communicator%sum(sums)
+    call plate%communicator%sum(sums)
     self%first = sums(1)
     self%contact = sums(1) - sums(2)
     self%contact_decrease = sums(3)
@@ -73,17 +73,17 @@ contains
   end subroutine begin
 
   !> Accepts the fraction if the directional derivative is small enough, otherwise chooses another one. Collective.
-  subroutine assess(self, model, smooth, ends)
+  subroutine assess(self, plate, smooth, ends)
     class(line_search_t), intent(inout) :: self
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Residual at this fraction, without contacts and ties, (5, points)
     real(wp), intent(in) :: smooth(:, :)
     !> True: the fraction is accepted
     logical, intent(out) :: ends
     real(wp) :: force, part
 
-    force = model%product(self%direction, smooth)
-    call model%communicator%sum(force)
+    force = plate%product(self%direction, smooth)
+    call plate%communicator%sum(force)
     force = force + self%contact - self%fraction*self%contact_decrease
     self%trials = self%trials + 1
     ends = abs(force) <= self%controls%search_slope*self%first .or. self%trials >= self%controls%search_trials &

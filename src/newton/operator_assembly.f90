@@ -10,6 +10,7 @@ module operator_assembly
   use delamination_parameters, only: law_cohesive
   use numberings, only: numbering_t
   use idle_membranes, only: uncoupled
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   implicit none
   private
@@ -19,12 +20,12 @@ contains
 
   !> True if all operators of a model are positive definite: in steps in time, with secant stiffness of the laws, or
   !> without buckling and softening.
-  pure logical function is_positive_definite(model) result(positive)
-    type(model_t), intent(in) :: model
+  pure logical function is_positive_definite(plate) result(positive)
+    type(composite_plate_t), intent(in) :: plate
 
-    positive = model%setup%has_inertia() .or. model%setup%mesh%kinematics == kinematics_linear
-    if (.not. model%setup%has_inertia() .and. model%map%layered) &
-      positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
+    positive = plate%setup%has_inertia() .or. plate%setup%mesh%kinematics == kinematics_linear
+    if (.not. plate%setup%has_inertia() .and. plate%map%layered) &
+      positive = positive .and. .not. any(plate%setup%delaminations%law == law_cohesive)
   end function is_positive_definite
 
   !> True if the tangent does not couple in-plane displacements with bending: an undeflected, flat plate of a symmetric
@@ -36,11 +37,12 @@ contains
     !> Displacement at which the tangent is taken, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
-    separate = .not. (model%membrane_idle .or. model%map%layered .or. size(model%lines) > 0 .or. &
-                      allocated(model%elements%initial_slopes) .or. allocated(model%elements%beams))
-    if (model%setup%mesh%kinematics == kinematics_von_karman) &
+    separate = .not. (model%plate%constraints%membrane_idle .or. model%plate%map%layered &
+                      .or. size(model%loads%lines) > 0 .or. &
+                      allocated(model%plate%elements%initial_slopes) .or. allocated(model%plate%elements%beams))
+    if (model%plate%setup%mesh%kinematics == kinematics_von_karman) &
       separate = separate .and. all(abs(displacement(3, :)) <= 0)
-    separate = model%communicator%all(separate .and. uncoupled(stiffness, model%elements%mass))
+    separate = model%plate%communicator%all(separate .and. uncoupled(stiffness, model%plate%elements%mass))
   end function has_separate_membrane
 
   !> Adds the element matrices and a lumped mass to a cleared solver; diagonals of ghosts are added to their owners.
@@ -65,31 +67,32 @@ contains
     consistent_factor = mass_factor
     if (allocated(model%lumped)) consistent_factor = 0
     allocate (matrices(lanes, 45, 45), transposed(45, 45, lanes))
-    motion = model%motion_of(displacement)
-    do b = 1, model%elements%batches
-      if (allocated(model%free)) then
-        call tangent(model%elements, b, stiffness(:, :, b), model%setup%mesh%kinematics, motion, stiffness_factor, &
-                     consistent_factor, matrices, model%free(:, :, b))
+    motion = model%plate%motion_of(displacement)
+    do b = 1, model%plate%elements%batches
+      if (allocated(model%plate%layup%free)) then
+        call tangent(model%plate%elements, b, stiffness(:, :, b), model%plate%setup%mesh%kinematics, motion, &
+                     stiffness_factor, consistent_factor, matrices, model%plate%layup%free(:, :, b))
       else
-        call tangent(model%elements, b, stiffness(:, :, b), model%setup%mesh%kinematics, motion, stiffness_factor, &
-                     consistent_factor, matrices)
+        call tangent(model%plate%elements, b, stiffness(:, :, b), model%plate%setup%mesh%kinematics, motion, &
+                     stiffness_factor, consistent_factor, matrices)
       end if
       do column = 1, 45
         transposed(:, column, :) = transpose(matrices(:, :, column))
       end do
-      do lane = 1, model%elements%lanes_used(b)
-        call add_block(model, numbering, model%distribution%connectivity(:, first_element(b) + lane - 1), &
+      do lane = 1, model%plate%elements%lanes_used(b)
+        call add_block(model%plate, numbering, model%plate%distribution%connectivity(:, first_element(b) + lane - 1), &
                        transposed(:, :, lane), solver, diagonal, first_element(b) + lane - 1)
       end do
     end do
     if (allocated(model%lumped)) then
-      do point = 1, model%distribution%owned
-        call add_block(model, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, diagonal)
+      do point = 1, model%plate%distribution%owned
+        call add_block(model%plate, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, &
+                       diagonal)
       end do
     end if
     call add_line_supports(model, stiffness_factor, numbering, solver, diagonal)
     call add_lines(model, numbering, solver, diagonal)
-    call model%halo%accumulate(diagonal)
+    call model%plate%halo%accumulate(diagonal)
   end subroutine assemble_elements
 
   !> Adds the stiffness of line supports: w on the edges of circular windows, and elastic edges.
@@ -131,8 +134,8 @@ contains
     real(wp) :: spring
     integer :: i, node, column
 
-    do i = 1, size(model%lines)
-      associate (line => model%lines(i))
+    do i = 1, size(model%loads%lines)
+      associate (line => model%loads%lines(i))
         if (.not. line%load%prescribed) cycle
         do node = 1, size(line%weight)
           associate (first => line%first(node), last => line%first(node + 1) - 1)
@@ -148,8 +151,8 @@ contains
   end subroutine add_lines
 
   !> Adds a matrix of layer motions, transformed to the unknowns.
-  subroutine add_block(model, numbering, points, matrix, solver, diagonal, element)
-    type(model_t), intent(in) :: model
+  subroutine add_block(plate, numbering, points, matrix, solver, diagonal, element)
+    type(composite_plate_t), intent(in) :: plate
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
@@ -163,9 +166,9 @@ contains
     integer, allocatable :: unknown_points(:)
     real(wp), allocatable :: expanded(:, :)
 
-    if (model%map%layered) then
-      if (any(model%map%above(points) > 0)) then
-        call model%map%expand(points, matrix, unknown_points, expanded)
+    if (plate%map%layered) then
+      if (any(plate%map%above(points) > 0)) then
+        call plate%map%expand(points, matrix, unknown_points, expanded)
         call add_to(numbering, unknown_points, expanded, solver, diagonal, element)
         return
       end if
@@ -227,16 +230,16 @@ contains
   end subroutine add_parts
 
   !> Adds stiffness to the diagonals of the jumps, and of w and the clamped unknowns on rigs.
-  subroutine assemble_diagonal(model, numbering, added, solver)
-    type(model_t), intent(in) :: model
+  subroutine assemble_diagonal(plate, numbering, added, solver)
+    type(composite_plate_t), intent(in) :: plate
     type(numbering_t), intent(in) :: numbering
     !> Stiffness added to the three jumps, and to u, v and w of first points, (3, points)
     real(wp), intent(in) :: added(:, :)
     class(linear_solver_t), intent(inout) :: solver
     integer :: i, component
 
-    do i = 1, model%distribution%owned
-      if (model%zone(i) == 0 .and. .not. any(abs(added(:, i)) > 0)) cycle
+    do i = 1, plate%distribution%owned
+      if (plate%zone(i) == 0 .and. .not. any(abs(added(:, i)) > 0)) cycle
       do component = 1, 3
         if (numbering%equation(component, i) >= 0) &
           call solver%matrix%add([numbering%equation(component, i)], reshape([added(component, i)], [1, 1]))
@@ -246,8 +249,8 @@ contains
 
   !> Adds the symmetric off-diagonal terms of the consistent tangents of cohesive laws; their diagonals are added with
   !> those of the other interfaces.
-  subroutine assemble_tangents(model, numbering, tangents, solver)
-    type(model_t), intent(in) :: model
+  subroutine assemble_tangents(plate, numbering, tangents, solver)
+    type(composite_plate_t), intent(in) :: plate
     type(numbering_t), intent(in) :: numbering
     !> Force per jump, (3, 3, points)
     real(wp), intent(in) :: tangents(:, :, :)
@@ -255,8 +258,8 @@ contains
     real(wp) :: coupling(3, 3)
     integer :: i, k
 
-    do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
+    do i = 1, plate%distribution%owned
+      if (plate%zone(i) == 0) cycle
       coupling = (tangents(:, :, i) + transpose(tangents(:, :, i)))/2
       do k = 1, 3
         coupling(k, k) = 0

@@ -18,9 +18,9 @@ contains
 
   !> Residual over the largest reference force, the larger of translations and rotations; infinite if a number is not
   !> finite. The same on every rank.
-  real(wp) function relative_residual(model, operator, equilibrium, residual, references, displacement, may_end, &
+  real(wp) function relative_residual(plate, operator, equilibrium, residual, references, displacement, may_end, &
                                       largest) result(norm)
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The operator. Round-off of products of its diagonal and the unknowns is a lower bound of the residual: shear
     !> forces of a thin plate are small differences of large numbers
     type(tangent_operator_t), intent(in) :: operator
@@ -40,17 +40,17 @@ contains
     real(wp) :: squares(2 + size(references)), limits(2), scale(2)
 
     squares = [sums_of_squares(operator%numbering, residual), references]
-    call model%communicator%sum(squares)
+    call plate%communicator%sum(squares)
     norm = ieee_value(norm, ieee_positive_inf)
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
     scale = max(maxval(reshape(squares(3:), shape(references)), 2), equilibrium%controls%force_floor*largest)
     ! The thickness is the lever arm that converts forces to moments.
-    scale(2) = max(scale(2), model%thickness*scale(1))
+    scale(2) = max(scale(2), plate%layup%thickness*scale(1))
     norm = maxval(squares(:2)/max(scale, tiny(norm)))
     if (norm > equilibrium%tolerance .and. may_end) then
       limits = sums_of_squares(operator%numbering, round_off_forces(operator%diagonal, displacement))
-      call model%communicator%sum(limits)
+      call plate%communicator%sum(limits)
       if (.not. all(limits <= huge(norm))) return
       limits = equilibrium%controls%last_digits*epsilon(norm)/equilibrium%tolerance*sqrt(limits)
       norm = maxval(squares(:2)/max(scale, limits, tiny(norm)))

@@ -139,7 +139,7 @@ contains
     logical :: ends, corrected
 
     converged = .false.
-    call new%start_from(model, old)
+    call new%start_from(model%plate, old)
     at = new_newton_iteration(model, equilibrium, operator, old, new)
     problem%controls = equilibrium%controls
     search%controls = equilibrium%controls
@@ -154,8 +154,8 @@ contains
       search%on = .false.
       call update_contact(problem, at, converged)
       if (converged) exit
-      if (at%multipliers_changed .and. new%contact_iterations < equilibrium%max_iterations) cycle
-      if (.not. at%norm <= huge(at%norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      if (at%multipliers_changed .and. new%iterations%contact < equilibrium%max_iterations) cycle
+      if (.not. at%norm <= huge(at%norm) .or. new%iterations%equilibrium >= equilibrium%max_iterations) exit
       problem%uses_element_tangents = problem%uses_element_tangents .or. at%previous_norm > 0 &
         .and. at%norm > equilibrium%controls%element_reduction*at%previous_norm
       call correct(problem, at, search, corrected, error)
@@ -163,7 +163,7 @@ contains
       at%previous_norm = at%norm
       new%motion%displacement = new%motion%displacement + at%correction
       call problem%complete(at)
-      new%iterations = new%iterations + 1
+      new%iterations%equilibrium = new%iterations%equilibrium + 1
     end do
     if (converged) call problem%finish(at)
   end subroutine solve_step
@@ -181,13 +181,13 @@ contains
     if (converged) converged = problem%may_stop(at)
     at%multipliers_changed = .false.
     if (.not. converged) return
-    call at%model%profile%enter('contact and ties')
+    call at%model%plate%profile%enter('contact and ties')
     associate (equilibrium => at%equilibrium, new => at%new)
       call new%interfaces%update_contact(at%model, new%motion%displacement, &
                                          equilibrium%controls%contact_share*equilibrium%tolerance, &
-                                         new%contact_iterations, converged)
+                                         new%iterations%contact, converged)
     end associate
-    call at%model%profile%leave()
+    call at%model%plate%profile%leave()
     at%multipliers_changed = .not. converged
     if (at%multipliers_changed) at%previous_norm = 0
   end subroutine update_contact
@@ -201,7 +201,7 @@ contains
     !> True: the fraction is accepted
     logical, intent(out) :: ends
 
-    call search%assess(at%model, at%smooth, ends)
+    call search%assess(at%model%plate, at%smooth, ends)
     if (ends) return
     at%new%motion%displacement = search%start + search%fraction*search%direction
     call problem%complete(at)
@@ -217,9 +217,9 @@ contains
     call at%operator%timers%start('element forces')
     call problem%find_residual(at)
     if (problem%uses_line_search) at%smooth = at%residual
-    call at%model%profile%enter('contact and ties')
+    call at%model%plate%profile%enter('contact and ties')
     call at%new%interfaces%add_to_residual(at%model, at%new%motion%displacement, at%residual)
-    call at%model%profile%leave()
+    call at%model%plate%profile%leave()
     call at%operator%timers%stop('element forces')
   end subroutine find_forces
 
@@ -240,14 +240,14 @@ contains
     corrected = .not. allocated(error)
     if (corrected .and. problem%uses_line_search) then
       allocate (stiffness(3, size(at%correction, 2)))
-      call at%new%interfaces%contact%added_stiffness(at%model, at%operator%diagonal, stiffness)
+      call at%new%interfaces%contact%added_stiffness(at%model%plate, at%operator%diagonal, stiffness)
       call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
-      call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
+      call search%begin(at%model%plate, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
                         at%negative_curvature)
     else if (.not. corrected) then
       ! Divergence, or an operator that is not definite, as where all contacts open: a shorter step may succeed.
-      if ((problem%may_be_shortened .or. at%model%setup%impactor%is_present .or. at%new%iterations > 0) .and. &
-          error%code == exit_convergence) deallocate (error)
+      if ((problem%may_be_shortened .or. at%model%plate%setup%impactor%is_present &
+           .or. at%new%iterations%equilibrium > 0) .and. error%code == exit_convergence) deallocate (error)
     end if
   end subroutine correct
 end module step_problems

@@ -13,6 +13,7 @@ module tangent_operators
   use krylov_solvers, only: krylov_solver_t
   use linear_solvers, only: linear_solver_t
   use numberings, only: numbering_t, number_equations
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use states, only: state_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite, &
@@ -76,12 +77,12 @@ contains
     !> Set if the solver cannot be created
     type(error_t), allocatable, intent(out) :: error
 
-    allocate (self%displacement(5, size(model%distribution%points)), source=0.0_wp)
+    allocate (self%displacement(5, size(model%plate%distribution%points)), source=0.0_wp)
     self%response = self%displacement
     self%diagonal = self%displacement
     self%added = self%displacement(:3, :)
-    self%stiffness = model%elements%stiffness
-    self%timers%profile = model%profile
+    self%stiffness = model%plate%elements%stiffness
+    self%timers%profile = model%plate%profile
     allocate (self%solver)
     self%solver%factorization = factorization
     call set_pattern(self, model, has_separate_membrane(model, self%stiffness, self%displacement), error)
@@ -98,11 +99,11 @@ contains
     !> Set if the solver cannot be created
     type(error_t), allocatable, intent(inout) :: error
 
-    call number_equations(model%mesh, model%distribution, model%held_unknowns(), self%numbering, model%images, &
-                          is_separate)
+    call number_equations(model%plate%mesh, model%plate%distribution, model%held_unknowns(), self%numbering, &
+                          model%plate%constraints%images, is_separate)
     associate (numbering => self%numbering)
-      call self%solver%define(model%communicator, numbering%first_row, numbering%total, numbering%row_start, &
-                              numbering%columns, is_positive_definite(model), error)
+      call self%solver%define(model%plate%communicator, numbering%first_row, numbering%total, numbering%row_start, &
+                              numbering%columns, is_positive_definite(model%plate), error)
     end associate
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
@@ -127,10 +128,10 @@ contains
     call assemble(self, model, error)
     if (allocated(error)) return
     if (allocated(state%interfaces%cohesive%tangents)) &
-      call assemble_tangents(model, self%numbering, state%interfaces%cohesive%tangents, self%solver)
+      call assemble_tangents(model%plate, self%numbering, state%interfaces%cohesive%tangents, self%solver)
     call state%interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
     call self%timers%stop('assembly')
-    call self%factorize(model, state%contact, error)
+    call self%factorize(model, state%impact%patch, error)
   end subroutine renew
 
   !> Factorizes the assembled matrix with the stiffness added to the jumps, and computes the unit-load solution.
@@ -142,7 +143,7 @@ contains
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%has_point_stiffness) call assemble_diagonal(model, self%numbering, self%added, self%solver)
+    if (model%has_point_stiffness) call assemble_diagonal(model%plate, self%numbering, self%added, self%solver)
     call self%solver%matrix%finish_assembly(error)
     call self%timers%start('factorization')
     if (.not. allocated(error)) call self%solver%factorize(error)
@@ -152,13 +153,13 @@ contains
     self%factorizations = self%factorizations + 1
     self%response = 0
     self%compliance = 0
-    if (model%setup%impactor%is_present) call self%find_response(model, contact, error)
+    if (model%plate%setup%impactor%is_present) call self%find_response(model%plate, contact, error)
   end subroutine factorize
 
   !> Computes the unit-load solution of the impactor's force.
-  subroutine find_response(self, model, contact, error)
+  subroutine find_response(self, plate, contact, error)
     class(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Patch under the impactor
     type(contact_patch_t), intent(in) :: contact
     !> Set if the solve fails
@@ -167,11 +168,11 @@ contains
 
     allocate (force, mold=self%response)
     force = 0
-    force(3, :) = contact%weights/model%mesh%multiplicity
-    call self%correct(model, force, self%response, error)
+    force(3, :) = contact%weights/plate%mesh%multiplicity
+    call self%correct(plate, force, self%response, error)
     if (allocated(error)) return
     self%response_rows = self%rows_of(self%response)
-    self%compliance = contact%mean(model%communicator, self%response)
+    self%compliance = contact%mean(plate%communicator, self%response)
   end subroutine find_response
 
   !> Solution on this rank's rows with the present factorization.
@@ -206,27 +207,27 @@ contains
 
   !> True if ties and contacts have changed at more equations than the number of solves that cost one factorization:
   !> each change adds a dimension to the Krylov space. Collective.
-  logical function has_outdated_constraints(self, model, current, max_changes)
+  logical function has_outdated_constraints(self, plate, current, max_changes)
     class(tangent_operator_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Present stiffness added to the jumps, (3, points)
     real(wp), intent(in) :: current(:, :)
     !> Number of changes that the iteration may account for
     integer, intent(in) :: max_changes
     real(wp) :: changed
 
-    associate (owned => model%distribution%owned)
+    associate (owned => plate%distribution%owned)
       changed = count(abs(current(:, :owned) - self%added(:, :owned)) > self%diagonal(:3, :owned) &
                       .and. self%numbering%equation(:3, :owned) >= 0)
     end associate
-    call model%communicator%sum(changed)
+    call plate%communicator%sum(changed)
     has_outdated_constraints = changed > max_changes
   end function has_outdated_constraints
 
   !> Correction of the displacement for a residual, ghosts included.
-  subroutine correct(self, model, residual, correction, error)
+  subroutine correct(self, plate, residual, correction, error)
     class(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> Correction, (5, points)
@@ -239,7 +240,7 @@ contains
     call self%solve_rows(forces, rows, error)
     if (allocated(error)) return
     call self%numbering%scatter(rows, correction)
-    call model%halo%update(correction)
+    call plate%halo%update(correction)
   end subroutine correct
 
   !> Saves the data that the factorization was computed from, or loads them and factorizes: the factorization affects
@@ -256,15 +257,12 @@ contains
     call archive%item('operator/ready', self%ready)
     call archive%item('operator/stiffness_factor', self%stiffness_factor)
     call archive%item('operator/mass_factor', self%mass_factor)
-    associate (share => model%distribution)
-      call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement, &
-                         motion_field)
-      if (model%has_point_stiffness) &
-        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added, area_field)
-    end associate
-    if (model%setup%has_variable_sections()) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
+    call model%plate%visit_points(archive, 'operator/displacement', self%displacement, motion_field)
+    if (model%has_point_stiffness) call model%plate%visit_points(archive, 'operator/added', self%added, area_field)
+    if (model%plate%setup%has_variable_sections()) &
+      call visit_stiffness(archive, 'operator/stiffness', model%plate, self%stiffness)
     if (archive%loading .and. self%ready) then
-      call model%halo%update(self%displacement)
+      call model%plate%halo%update(self%displacement)
       call assemble(self, model, error)
       if (.not. allocated(error)) call self%factorize(model, contact, error)
     end if
@@ -283,8 +281,8 @@ contains
     is_separate = has_separate_membrane(model, self%stiffness, self%displacement)
     if (is_separate .neqv. self%numbering%is_separate) call set_pattern(self, model, is_separate, error)
     if (allocated(error)) return
-    self%deflection = model%deflection(self%displacement)
-    call self%solver%matrix%clear(merge(2, 1, is_separate)*size(model%distribution%connectivity, 2))
+    self%deflection = model%plate%deflection(self%displacement)
+    call self%solver%matrix%clear(merge(2, 1, is_separate)*size(model%plate%distribution%connectivity, 2))
     call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
                            self%mass_factor, self%solver, self%diagonal)
   end subroutine assemble

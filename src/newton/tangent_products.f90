@@ -77,7 +77,7 @@ contains
       allocate (field, force, inertia, mold=self%displacement)
       field = 0
       call self%operator%numbering%scatter(vector, field)
-      call self%model%halo%update(field)
+      call self%model%plate%halo%update(field)
       force = 0
       if (self%elements) call self%add_elements(field, force)
       factor = merge(self%mass_factor, self%mass_change, self%elements)
@@ -117,8 +117,8 @@ contains
     !> Motion of this rank's rows
     real(wp), intent(in) :: motion(:)
 
-    mean = self%model%mesh%multiplicity*dot_product(self%pattern, motion)
-    call self%model%communicator%sum(mean)
+    mean = self%model%plate%mesh%multiplicity*dot_product(self%pattern, motion)
+    call self%model%plate%communicator%sum(mean)
   end function mean
 
   !> Sets the stiffness of the jumps: diagonals of ties, contacts and frames, and tangents of cohesive laws. Collective.
@@ -152,7 +152,7 @@ contains
     end do
     call drop_if_zero(self)
     softening = merge(1.0_wp, 0.0_wp, self%softens)
-    call self%model%communicator%maximum(softening)
+    call self%model%plate%communicator%maximum(softening)
     self%softens = softening > 0
   end subroutine set_jump_stiffness
 
@@ -165,7 +165,7 @@ contains
 
     allocate (self%jumps(3, 3, self%operator%numbering%owned), source=0.0_wp)
     do i = 1, self%operator%numbering%owned
-      if (self%model%zone(i) > 0) self%jumps(:, :, i) = (tangents(:, :, i) - transpose(tangents(:, :, i)))/2
+      if (self%model%plate%zone(i) > 0) self%jumps(:, :, i) = (tangents(:, :, i) - transpose(tangents(:, :, i)))/2
     end do
     call drop_if_zero(self)
   end subroutine set_skew_part
@@ -176,7 +176,7 @@ contains
     real(wp) :: largest
 
     largest = maxval([0.0_wp, abs(self%jumps)])
-    call self%model%communicator%maximum(largest)
+    call self%model%plate%communicator%maximum(largest)
     if (.not. largest > 0) deallocate (self%jumps)
   end subroutine drop_if_zero
 
@@ -200,22 +200,22 @@ contains
     real(wp) :: energy
 
     associate (model => self%model)
-      allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
-      call add_tangent_force(model%elements, self%stiffness, model%setup%mesh%kinematics, &
-                             model%motion_of(self%displacement), model%motion_of(motion), columns, self%free, &
-                             self%mean_change)
-      call model%borders%add(columns)
+      allocate (columns(5, max(size(force, 2), model%plate%borders%columns)), source=0.0_wp)
+      call add_tangent_force(model%plate%elements, self%stiffness, model%plate%setup%mesh%kinematics, &
+                             model%plate%motion_of(self%displacement), model%plate%motion_of(motion), columns, &
+                             self%free, self%mean_change)
+      call model%plate%borders%add(columns)
       force = columns(:, :size(force, 2))
-      if (model%map%layered) call model%map%to_unknowns(force)
+      if (model%plate%map%layered) call model%plate%map%to_unknowns(force)
       energy = 0
       call model%rig%add_line_forces(motion, force, energy)
       force = self%stiffness_factor*force
-      if (size(model%lines) == 0) return
+      if (size(model%loads%lines) == 0) return
       allocate (lines, zero_motion, mold=force)
       zero_motion = 0
-      call model%line_forces(zero_motion, 0.0_wp, lines, prescribed=.true.)
+      call model%loads%line_forces(zero_motion, 0.0_wp, lines, prescribed=.true.)
       force = force + lines
-      call model%line_forces(motion, 0.0_wp, lines, prescribed=.true.)
+      call model%loads%line_forces(motion, 0.0_wp, lines, prescribed=.true.)
       force = force - lines
     end associate
   end subroutine add_elements

@@ -43,15 +43,15 @@ module band_states
 contains
 
   !> Plies without damage.
-  pure function new_band_states(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_band_states(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(band_states_t) :: self
-    integer :: range(2, model%elements%elements), i, place, next
+    integer :: range(2, plate%elements%elements), i, place, next
 
     allocate (self%laminate(size(range, 2)), self%number(0))
-    allocate (self%entry(model%plies, size(model%laminates)), source=0)
-    do i = 1, size(model%laminates)
-      associate (numbers => model%laminates(i)%number)
+    allocate (self%entry(plate%layup%plies, size(plate%layup%laminates)), source=0)
+    do i = 1, size(plate%layup%laminates)
+      associate (numbers => plate%layup%laminates(i)%number)
         do place = 1, size(numbers)
           self%entry(numbers(place), i) = size(self%number) + place
         end do
@@ -59,8 +59,8 @@ contains
       end associate
     end do
     do i = 1, size(range, 2)
-      self%laminate(i) = model%mesh%layers(model%stack(i))%laminate
-      associate (numbers => model%stacks(model%stack(i))%number)
+      self%laminate(i) = plate%mesh%layers(plate%layup%stack(i))%laminate
+      associate (numbers => plate%layup%stacks(plate%layup%stack(i))%number)
         range(:, i) = self%entry(numbers([1, size(numbers)]), self%laminate(i))
       end associate
     end do
@@ -180,19 +180,19 @@ contains
   end function permanent_shear
 
   !> Saves or loads the accepted states. Collective.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(band_states_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer, parameter :: numbers = 3 + energy_modes
     real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked, cracked
     integer :: element, entry, ply
 
     ! A column has all plies of the plate, so that, when an element is split into layers, each layer can read its
     ! plies from the column of the undivided element.
-    allocate (table(numbers*model%plies, size(self%offset)), strains(2*model%plies, size(self%offset)), &
-              closed(2*model%plies, size(self%offset)), kinked(model%plies, size(self%offset)), &
-              cracked(model%plies, size(self%offset)), &
+    allocate (table(numbers*plate%layup%plies, size(self%offset)), strains(2*plate%layup%plies, size(self%offset)), &
+              closed(2*plate%layup%plies, size(self%offset)), kinked(plate%layup%plies, size(self%offset)), &
+              cracked(plate%layup%plies, size(self%offset)), &
               source=0.0_wp)
     do element = 1, size(self%offset)
       do entry = self%range(1, element), self%range(2, element)
@@ -206,8 +206,8 @@ contains
         end associate
       end do
     end do
-    associate (owned => model%distribution%elements, elements => model%mesh%elements(), &
-               damage => model%setup%ply_damage)
+    associate (owned => plate%distribution%elements, elements => plate%mesh%elements(), &
+               damage => plate%setup%ply_damage)
       call archive%field('ply_failure/crack_bands', owned, elements, table, ply_field)
       if (damage%permanent_shear) &
         call archive%field('ply_failure/permanent_shear', owned, elements, strains, ply_shear_field)
@@ -215,7 +215,7 @@ contains
         call archive%field('ply_failure/closed_cracks', owned, elements, closed, ply_field)
       if (damage%kinking) &
         call archive%field('ply_failure/kinked_fibres', owned, elements, kinked, ply_field)
-      if (model%setup%has_rates()) &
+      if (plate%setup%has_rates()) &
         call archive%field('ply_failure/strengthened', owned, elements, cracked, ply_field)
     end associate
     if (.not. archive%loading) return

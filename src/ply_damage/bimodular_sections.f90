@@ -37,18 +37,18 @@ module bimodular_sections
 contains
 
   !> Sections without strains.
-  function new_bimodular_sections(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function new_bimodular_sections(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(bimodular_sections_t) :: self
 
-    self%signs = new_mean_sections(model)
-    allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
-    if (allocated(model%free)) self%free = model%free
+    self%signs = new_mean_sections(plate)
+    allocate (self%free(lanes, 7, plate%elements%batches), source=0.0_wp)
+    if (allocated(plate%layup%free)) self%free = plate%layup%free
     self%tensile = self%free
-    self%stacks = model%stacks
-    self%stack = model%stack
-    allocate (self%failed(model%elements%elements), source=.false.)
-    if (model%setup%ply_damage%is_present) allocate (self%constants(model%plies, model%elements%elements))
+    self%stacks = plate%layup%stacks
+    self%stack = plate%layup%stack
+    allocate (self%failed(plate%elements%elements), source=.false.)
+    if (plate%setup%ply_damage%is_present) allocate (self%constants(plate%layup%plies, plate%elements%elements))
   end function new_bimodular_sections
 
   !> Takes over the reduced constants of the plies of an element.

@@ -90,45 +90,45 @@ module crack_band_sections
 contains
 
   !> Plies without damage.
-  function new_crack_band_sections(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function new_crack_band_sections(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(crack_band_sections_t) :: self
     integer :: i
 
-    call find_laws(model, self%plies, self%bands)
-    if (allocated(model%free)) then
-      self%free = model%free
-    else if (model%setup%ply_damage%permanent_shear .or. model%setup%ply_damage%crack_closure &
-             .or. model%setup%is_bimodular()) then
-      allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
+    call find_laws(plate, self%plies, self%bands)
+    if (allocated(plate%layup%free)) then
+      self%free = plate%layup%free
+    else if (plate%setup%ply_damage%permanent_shear .or. plate%setup%ply_damage%crack_closure &
+             .or. plate%setup%is_bimodular()) then
+      allocate (self%free(lanes, 7, plate%elements%batches), source=0.0_wp)
     end if
-    if (model%setup%is_bimodular()) then
-      self%signs = new_mean_sections(model)
+    if (plate%setup%is_bimodular()) then
+      self%signs = new_mean_sections(plate)
       self%tensile = self%free
     end if
-    self%states = new_band_states(model)
-    self%joined = find_joined_elements(model)
+    self%states = new_band_states(plate)
+    self%joined = find_joined_elements(plate)
     self%onset = [(onset_strain(self%bands(i)), i=1, size(self%bands))]
-    if (model%setup%ply_damage%scatters()) then
-      self%drawn = new_drawn_strengths(model, self%plies, self%states, self%joined%joined)
+    if (plate%setup%ply_damage%scatters()) then
+      self%drawn = new_drawn_strengths(plate, self%plies, self%states, self%joined%joined)
       self%onset = [(onset_strain(self%drawn%law(self%bands(i), self%states, i)), i=1, size(self%bands))]
     end if
     self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
-    if (model%setup%ply_damage%weibull_modulus > 0 .and. .not. allocated(self%drawn)) then
-      self%volumes = new_stressed_volumes(model, self%bands, self%states)
+    if (plate%setup%ply_damage%weibull_modulus > 0 .and. .not. allocated(self%drawn)) then
+      self%volumes = new_stressed_volumes(plate, self%bands, self%states)
       self%onset = min(self%onset, self%volumes%smallest_strain(self%bands))
     end if
-    if (model%setup%has_rates()) self%rates = new_loading_rates(model, size(self%states%trial))
-    if (model%setup%counts_rates()) self%onset = 0
+    if (plate%setup%has_rates()) self%rates = new_loading_rates(plate, size(self%states%trial))
+    if (plate%setup%counts_rates()) self%onset = 0
     self%onset = self%onset - [(norm2(self%plies(i)%free_strain), i=1, size(self%plies))]
-    self%stiffness = model%elements%stiffness
-    allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
-    allocate (self%touched(model%elements%elements), self%pending(model%elements%elements), source=.false.)
-    allocate (self%limits(lanes, 2, model%elements%batches), source=0.0_wp)
-    do i = 1, model%elements%elements
-      associate (place => model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
-        self%area(i) = model%mesh%cell_area(place)
-        self%sides(:, i) = model%mesh%cell_sides(place)*merge(2, 1, self%joined%joined(:, i))
+    self%stiffness = plate%elements%stiffness
+    allocate (self%sides(2, plate%elements%elements), self%area(plate%elements%elements))
+    allocate (self%touched(plate%elements%elements), self%pending(plate%elements%elements), source=.false.)
+    allocate (self%limits(lanes, 2, plate%elements%batches), source=0.0_wp)
+    do i = 1, plate%elements%elements
+      associate (place => plate%mesh%place_of(plate%mesh%element_cell(plate%distribution%elements(i))))
+        self%area(i) = plate%mesh%cell_area(place)
+        self%sides(:, i) = plate%mesh%cell_sides(place)*merge(2, 1, self%joined%joined(:, i))
       end associate
       associate (first => self%states%range(1, i), last => self%states%range(2, i))
         self%limits(lane_of(i), :, batch_of(i)) = [minval(self%onset(first:last)), maxval(self%height(first:last))]
@@ -334,12 +334,12 @@ contains
 
   !> Tensile strengths of fibres for their stressed volumes in the accepted state, which must be the last trial; those
   !> loaded remain until there is a trial. Collective.
-  subroutine update_strengths(self, model)
+  subroutine update_strengths(self, plate)
     class(crack_band_sections_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
     if (.not. allocated(self%volumes)) return
-    call self%volumes%update(model%communicator, self%states, self%plies, self%area, model%mesh%multiplicity)
+    call self%volumes%update(plate%communicator, self%states, self%plies, self%area, plate%mesh%multiplicity)
     self%bands%along(1) = self%volumes%strengths()
   end subroutine update_strengths
 
@@ -377,14 +377,14 @@ contains
   end function elasticity
 
   !> Saves or loads the accepted state.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(crack_band_sections_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: element
 
-    call self%states%visit(archive, model)
-    if (allocated(self%rates)) call self%rates%visit(archive, model, self%states%range, self%states%offset, &
+    call self%states%visit(archive, plate)
+    if (allocated(self%rates)) call self%rates%visit(archive, plate, self%states%range, self%states%offset, &
                                                           self%states%number)
     if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return

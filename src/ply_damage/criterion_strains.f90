@@ -11,8 +11,8 @@ module criterion_strains
 contains
 
   !> Mean strains of this rank's elements.
-  function mean_strains_of_elements(model, displacement) result(strains)
-    class(composite_plate_t), intent(in) :: model
+  function mean_strains_of_elements(plate, displacement) result(strains)
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; transverse shear gxz, gyz of the plate, (8, elements)
@@ -21,11 +21,11 @@ contains
     real(wp), allocatable :: motion(:, :)
     integer :: b, lane
 
-    allocate (strains(8, model%elements%elements))
-    motion = model%motion_of(displacement)
-    do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%setup%mesh%kinematics, motion, means)
-      do lane = 1, model%elements%lanes_used(b)
+    allocate (strains(8, plate%elements%elements))
+    motion = plate%motion_of(displacement)
+    do b = 1, plate%elements%batches
+      call mean_strains(plate%elements, b, plate%setup%mesh%kinematics, motion, means)
+      do lane = 1, plate%elements%lanes_used(b)
         strains(:, first_element(b) + lane - 1) = means(lane, :)
       end do
     end do

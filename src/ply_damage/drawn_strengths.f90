@@ -23,9 +23,9 @@ module drawn_strengths
 
 contains
 
-  !> Strengths of a model's plies. An element has that of its weakest square.
-  function new_drawn_strengths(model, plies, states, joined) result(self)
-    class(composite_plate_t), intent(in) :: model
+  !> Strengths of the plies of a plate. An element has that of its weakest square.
+  function new_drawn_strengths(plate, plies, states, joined) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> Plies of the different laminates, one after the other
     type(ply_t), intent(in) :: plies(:)
     !> States of the plies of all elements
@@ -37,9 +37,9 @@ contains
     integer :: element, ply, squares(2, 2)
 
     allocate (self%factor(size(states%trial)), source=1.0_wp)
-    associate (damage => model%setup%ply_damage)
+    associate (damage => plate%setup%ply_damage)
       do element = 1, size(joined, 2)
-        squares = squares_of(model, element, joined(:, element))
+        squares = squares_of(plate, element, joined(:, element))
         !GCC$ NOVECTOR
         do ply = states%range(1, element), states%range(2, element)
           volume = damage%strength_length**2*(plies(ply)%z_bottom - plies(ply)%z_top)
@@ -103,8 +103,8 @@ contains
   end function weakest_of
 
   !> The squares of an element; elements that share their damage have one strength, that of all their squares.
-  pure function squares_of(model, element, joined) result(squares)
-    class(composite_plate_t), intent(in) :: model
+  pure function squares_of(plate, element, joined) result(squares)
+    type(composite_plate_t), intent(in) :: plate
     !> Element of this rank
     integer, intent(in) :: element
     !> True along x and y if it shares its damage with the element beyond its side
@@ -114,8 +114,8 @@ contains
     real(wp) :: other(2), ends(2)
     integer :: place(2), side(2), i
 
-    associate (mesh => model%mesh, setup => model%setup)
-      place = mesh%place_of(mesh%element_cell(model%distribution%elements(element)))
+    associate (mesh => plate%mesh, setup => plate%setup)
+      place = mesh%place_of(mesh%element_cell(plate%distribution%elements(element)))
       side = mesh%struck_side(place)
       do i = 1, 2
         ends = mesh%along(i)%ends(place(i))

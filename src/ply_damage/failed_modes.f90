@@ -29,18 +29,18 @@ module failed_modes
 contains
 
   !> No failure.
-  pure function new_failed_modes(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_failed_modes(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(failed_modes_t) :: self
 
-    if (.not. model%setup%ply_damage%is_present) return
-    allocate (self%occurred(failure_modes, model%plies, model%elements%elements), source=.false.)
+    if (.not. plate%setup%ply_damage%is_present) return
+    allocate (self%occurred(failure_modes, plate%layup%plies, plate%elements%elements), source=.false.)
   end function new_failed_modes
 
   !> Finds the modes whose criteria are met for the first time.
-  subroutine find(self, model, stiffness, displacement, found)
+  subroutine find(self, plate, stiffness, displacement, found)
     class(failed_modes_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
@@ -51,11 +51,11 @@ contains
     logical, allocatable :: failing(:, :)
     integer :: element
 
-    strains = mean_strains_of_elements(model, displacement)
+    strains = mean_strains_of_elements(plate, displacement)
     allocate (found(size(strains, 2)))
     do element = 1, size(found)
-      associate (plies => model%stacks(model%stack(element))%number)
-        failing = failure_measures(model, stiffness, element, self%elasticities(model, element), &
+      associate (plies => plate%layup%stacks(plate%layup%stack(element))%number)
+        failing = failure_measures(plate, stiffness, element, self%elasticities(plate, element), &
                                    strains(:, element)) >= 1 .and. .not. self%occurred(:, plies, element)
         self%occurred(:, plies, element) = self%occurred(:, plies, element) .or. failing
       end associate
@@ -64,35 +64,35 @@ contains
   end subroutine find
 
   !> Reduced elastic constants of a ply of an element.
-  pure function elasticity(self, model, ply, element)
+  pure function elasticity(self, plate, ply, element)
     class(failed_modes_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Ply of the laminate, and element of this rank that has it
     integer, intent(in) :: ply, element
     !> Constants of the ply
     type(elasticity_t) :: elasticity
 
-    associate (stack => model%stacks(model%stack(element)))
+    associate (stack => plate%layup%stacks(plate%layup%stack(element)))
       elasticity = stack%plies(stack%place(ply))%elasticity
     end associate
     if (allocated(self%occurred)) &
-      elasticity = degraded(elasticity, self%occurred(:, ply, element), model%setup%ply_damage)
+      elasticity = degraded(elasticity, self%occurred(:, ply, element), plate%setup%ply_damage)
   end function elasticity
 
   !> Reduced elastic constants of the plies of an element.
-  pure function elasticities(self, model, element) result(elasticity)
+  pure function elasticities(self, plate, element) result(elasticity)
     class(failed_modes_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Element of this rank
     integer, intent(in) :: element
     !> Constants of the element's plies
     type(elasticity_t), allocatable :: elasticity(:)
     integer :: i
 
-    associate (plies => model%stacks(model%stack(element))%number)
+    associate (plies => plate%layup%stacks(plate%layup%stack(element))%number)
       allocate (elasticity(size(plies)))
       do i = 1, size(plies)
-        elasticity(i) = self%elasticity(model, plies(i), element)
+        elasticity(i) = self%elasticity(plate, plies(i), element)
       end do
     end associate
   end function elasticities
@@ -109,22 +109,22 @@ contains
   end function failed
 
   !> Saves or loads the modes.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(failed_modes_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp), allocatable :: table(:, :)
     integer :: element, ply
 
     if (.not. allocated(self%occurred)) return
     table = reshape(merge(1.0_wp, 0.0_wp, self%occurred), [size(self%occurred, 1)*size(self%occurred, 2), &
                                                           size(self%occurred, 3)])
-    call archive%field('ply_failure/occurred', model%distribution%elements, model%mesh%elements(), table, ply_field)
+    call archive%field('ply_failure/occurred', plate%distribution%elements, plate%mesh%elements(), table, ply_field)
     self%occurred = reshape(table, shape(self%occurred)) > 0
     ! The loaded state may be that of an element with more plies.
     do element = 1, size(self%occurred, 3)
       do ply = 1, size(self%occurred, 2)
-        if (.not. model%stacks(model%stack(element))%has(ply)) self%occurred(:, ply, element) = .false.
+        if (.not. plate%layup%stacks(plate%layup%stack(element))%has(ply)) self%occurred(:, ply, element) = .false.
       end do
     end do
   end subroutine visit

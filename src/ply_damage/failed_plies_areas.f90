@@ -13,22 +13,22 @@ module failed_plies_areas
 contains
 
   !> Area in which each ply has failed in each mode, of the full plate. Collective.
-  function failed_areas(model, failures) result(areas)
-    class(composite_plate_t), intent(in) :: model
+  function failed_areas(plate, failures) result(areas)
+    type(composite_plate_t), intent(in) :: plate
     type(ply_failure_t), intent(in) :: failures
     !> (modes, plies)
-    real(wp) :: areas(failure_modes, model%plies)
+    real(wp) :: areas(failure_modes, plate%layup%plies)
     real(wp) :: area
     logical :: failed(failure_modes)
-    type(exact_sum_t) :: sums(failure_modes, model%plies)
+    type(exact_sum_t) :: sums(failure_modes, plate%layup%plies)
     integer :: k, mode, i
 
     areas = 0
-    if (.not. model%setup%ply_damage%is_present) return
-    do i = 1, model%elements%elements
+    if (.not. plate%setup%ply_damage%is_present) return
+    do i = 1, plate%elements%elements
       if (.not. may_have_failed(failures, i)) cycle
-      area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
-      associate (plies => model%stacks(model%stack(i))%number)
+      area = plate%mesh%cell_area(plate%mesh%place_of(plate%mesh%element_cell(plate%distribution%elements(i))))
+      associate (plies => plate%layup%stacks(plate%layup%stack(i))%number)
         do k = 1, size(plies)
           failed = failures%failed(plies(k), i)
           do mode = 1, failure_modes
@@ -37,29 +37,29 @@ contains
         end do
       end associate
     end do
-    areas = reshape(totals_of(model%communicator, [sums]), shape(areas))*model%mesh%multiplicity
+    areas = reshape(totals_of(plate%communicator, [sums]), shape(areas))*plate%mesh%multiplicity
   end function failed_areas
 
   !> Number of ply elements failed in each mode, of the full plate. Collective.
-  function failed_counts(model, failures) result(counts)
-    class(composite_plate_t), intent(in) :: model
+  function failed_counts(plate, failures) result(counts)
+    type(composite_plate_t), intent(in) :: plate
     type(ply_failure_t), intent(in) :: failures
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)
     integer :: element, k, mode
 
     counts = 0
-    if (.not. model%setup%ply_damage%is_present) return
-    do element = 1, model%elements%elements
+    if (.not. plate%setup%ply_damage%is_present) return
+    do element = 1, plate%elements%elements
       if (.not. may_have_failed(failures, element)) cycle
-      associate (plies => model%stacks(model%stack(element))%number)
+      associate (plies => plate%layup%stacks(plate%layup%stack(element))%number)
         do k = 1, size(plies)
-          where (failures%failed(plies(k), element)) counts = counts + model%mesh%multiplicity
+          where (failures%failed(plies(k), element)) counts = counts + plate%mesh%multiplicity
         end do
       end associate
     end do
     do mode = 1, failure_modes
-      call model%communicator%sum(counts(mode))
+      call plate%communicator%sum(counts(mode))
     end do
   end function failed_counts
 

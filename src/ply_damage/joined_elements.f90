@@ -59,17 +59,17 @@ module joined_elements
 contains
 
   !> Finds the elements that share their state with others. Collective.
-  function find_joined_elements(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function find_joined_elements(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(joined_elements_t) :: self
     integer, allocatable :: numbers(:), parts(:, :)
     logical, allocatable :: joined(:, :), mine(:)
     integer :: element, plies
 
-    associate (mesh => model%mesh, elements => model%distribution%elements)
+    associate (mesh => plate%mesh, elements => plate%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
       do element = 1, mesh%elements()
-        call find_parts(mesh, element, model%setup%impactor%is_present, parts(:, element), joined(:, element))
+        call find_parts(mesh, element, plate%setup%impactor%is_present, parts(:, element), joined(:, element))
       end do
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)
@@ -84,16 +84,16 @@ contains
       end do
     end associate
     plies = 0
-    if (model%setup%ply_damage%permanent_shear) &
-      plies = sum([(size(model%laminates(element)%plies), element=1, size(model%laminates))])
+    if (plate%setup%ply_damage%permanent_shear) &
+      plies = sum([(size(plate%layup%laminates(element)%plies), element=1, size(plate%layup%laminates))])
     allocate (self%moments(moment_values + 1 + plies, size(self%area)), source=0.0_wp)
-    allocate (self%concerned(model%elements%batches), source=.false.)
+    allocate (self%concerned(plate%elements%batches), source=.false.)
     do element = 1, size(self%number)
       if (self%number(element) > 0) self%concerned(batch_of(element)) = .true.
     end do
     allocate (mine(size(self%area)), source=.false.)
     mine(pack(self%number, self%number > 0)) = .true.
-    self%across = new_column_exchange(model%communicator, mine, self%parts)
+    self%across = new_column_exchange(plate%communicator, mine, self%parts)
   end function find_joined_elements
 
   !> Replaces the non-zero entries by consecutive numbers.
@@ -265,16 +265,16 @@ contains
   end subroutine separate
 
   !> Saves or loads which elements are separated.
-  subroutine visit(self, archive, model, separated)
+  subroutine visit(self, archive, plate, separated)
     class(joined_elements_t), intent(in) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Receives them, (elements)
     logical, intent(out) :: separated(:)
     real(wp) :: fields(1, size(separated))
 
     fields(1, :) = merge(1.0_wp, 0.0_wp, self%separated)
-    call archive%field('ply_failure/separated', model%distribution%elements, model%mesh%elements(), fields, area_field)
+    call archive%field('ply_failure/separated', plate%distribution%elements, plate%mesh%elements(), fields, area_field)
     separated = fields(1, :) > 0
   end subroutine visit
 

@@ -11,8 +11,8 @@ module laminate_laws
 contains
 
   !> The plies of all laminates, and their laws with in-situ strengths.
-  pure subroutine find_laws(model, plies, bands)
-    class(composite_plate_t), intent(in) :: model
+  pure subroutine find_laws(plate, plies, bands)
+    type(composite_plate_t), intent(in) :: plate
     !> In the order of the laminates
     type(ply_t), allocatable, intent(out) :: plies(:)
     !> The law of each
@@ -20,8 +20,8 @@ contains
     integer :: i, ply
 
     allocate (plies(0), bands(0))
-    do i = 1, size(model%laminates)
-      associate (stacked => model%laminates(i)%plies, setup => model%setup)
+    do i = 1, size(plate%layup%laminates)
+      associate (stacked => plate%layup%laminates(i)%plies, setup => plate%setup)
         plies = [plies, stacked]
         bands = [bands, [(create_crack_band(material_in_place(stacked, ply, setup%materials, setup%ply_damage), &
                                             setup%ply_damage), ply=1, size(stacked))]]

@@ -36,13 +36,13 @@ module loading_rates
 contains
 
   !> Rates of plies without load.
-  pure function new_loading_rates(model, states) result(self)
-    class(composite_plate_t), intent(in) :: model
+  pure function new_loading_rates(plate, states) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> Number of plies of all elements
     integer, intent(in) :: states
     type(loading_rates_t) :: self
 
-    self%counts = model%setup%counts_rates()
+    self%counts = plate%setup%counts_rates()
     allocate (self%accepted(values, states), source=0.0_wp)
     self%trial = self%accepted
   end function new_loading_rates
@@ -98,10 +98,10 @@ contains
   end subroutine accept
 
   !> Saves or loads the accepted rates. Collective.
-  subroutine visit(self, archive, model, range, offset, number)
+  subroutine visit(self, archive, plate, range, offset, number)
     class(loading_rates_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> First and last ply of each element, and what its number is less than the place of its state
     integer, intent(in) :: range(:, :), offset(:)
     !> Number of each ply among those of the plate
@@ -110,14 +110,14 @@ contains
     integer :: element, ply, row
 
     ! A column has all plies of the plate, as those of the states.
-    allocate (table(values*model%plies, size(offset)), source=0.0_wp)
+    allocate (table(values*plate%layup%plies, size(offset)), source=0.0_wp)
     do element = 1, size(offset)
       do ply = range(1, element), range(2, element)
         row = values*(number(ply) - 1)
         table(row + 1:row + values, element) = self%accepted(:, offset(element) + ply)
       end do
     end do
-    call archive%field('ply_failure/loading_rates', model%distribution%elements, model%mesh%elements(), table, &
+    call archive%field('ply_failure/loading_rates', plate%distribution%elements, plate%mesh%elements(), table, &
                        ply_field)
     if (.not. archive%loading) return
     do element = 1, size(offset)

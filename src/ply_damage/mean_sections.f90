@@ -36,13 +36,13 @@ module mean_sections
 contains
 
   !> Sections with all sub-plies in tension.
-  function new_mean_sections(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function new_mean_sections(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(mean_sections_t) :: self
-    integer :: first(model%plies + 1, size(model%laminates)), range(2), k, element
+    integer :: first(plate%layup%plies + 1, size(plate%layup%laminates)), range(2), k, element
 
-    call number_sub_plies(self, model%laminates, first)
-    associate (batches => model%elements%batches)
+    call number_sub_plies(self, plate%layup%laminates, first)
+    associate (batches => plate%elements%batches)
       allocate (self%change(lanes, change_values, batches), source=0.0_wp)
       allocate (self%signs(lanes, size(self%factors, 2), batches), source=1.0_wp)
       allocate (self%range(lanes, 2, batches), self%is_set(lanes, batches))
@@ -50,9 +50,9 @@ contains
       self%range(:, 1, :) = 1
       self%range(:, 2, :) = 0
     end associate
-    do element = 1, model%elements%elements
-      k = model%mesh%layers(model%stack(element))%laminate
-      range = model%stacks(model%stack(element))%places()
+    do element = 1, plate%elements%elements
+      k = plate%mesh%layers(plate%layup%stack(element))%laminate
+      range = plate%layup%stacks(plate%layup%stack(element))%places()
       self%range(lane_of(element), :, batch_of(element)) = [first(range(1), k), first(range(2) + 1, k) - 1]
     end do
   end function new_mean_sections

@@ -28,14 +28,14 @@ module ply_columns
 contains
 
   !> Failures in each mode. Collective.
-  function ply_values(model, plies) result(values)
-    class(composite_plate_t), intent(in) :: model
+  function ply_values(plate, plies) result(values)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> One value per column, the same on every rank
     real(wp) :: values(size(ply_rows))
 
-    values = [real(failed_counts(model, plies), wp), plies%dissipated]
+    values = [real(failed_counts(plate, plies), wp), plies%dissipated]
   end function ply_values
 
   !> Energies of permanent strains.

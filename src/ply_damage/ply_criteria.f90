@@ -16,8 +16,8 @@ contains
   !> Failure indices of the plies of an element in each mode, failed or not: 1 where the criterion is met. They are the
   !> square roots of the criteria, and thus proportional to the load except for the linear terms of crushing after Hou
   !> and Hashin.
-  function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
-    class(composite_plate_t), intent(in) :: model
+  function failure_measures(plate, stiffness, element, elasticity, strains) result(measures)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
@@ -32,9 +32,9 @@ contains
     real(wp) :: shear(2, size(elasticity))
     integer :: i
 
-    shear = model%stacks(model%stack(element))%shear_stresses(shear_force(stiffness, element, strains(7:8)))
+    shear = plate%layup%stacks(plate%layup%stack(element))%shear_stresses(shear_force(stiffness, element, strains(7:8)))
     do i = 1, size(elasticity)
-      associate (ply => model%stacks(model%stack(element))%plies(i), setup => model%setup)
+      associate (ply => plate%layup%stacks(plate%layup%stack(element))%plies(i), setup => plate%setup)
         if (setup%ply_damage%stress == stress_at_faces) then
           stresses = face_stresses(ply, elasticity(i), strains(:6), shear(:, i))
         else

@@ -71,20 +71,20 @@ module ply_failures
 contains
 
   !> No failure. Collective.
-  function new_ply_failure(model) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function new_ply_failure(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(ply_failure_t) :: self
 
-    self%stiffness = model%elements%stiffness
-    if (allocated(model%free)) self%free = model%free
-    if (model%setup%has_crack_bands()) then
-      self%bands = new_crack_band_sections(model)
+    self%stiffness = plate%elements%stiffness
+    if (allocated(plate%layup%free)) self%free = plate%layup%free
+    if (plate%setup%has_crack_bands()) then
+      self%bands = new_crack_band_sections(plate)
       if (allocated(self%bands%free)) self%free = self%bands%free
       if (allocated(self%bands%signs)) self%mean_change = self%bands%signs%change
     else
-      self%modes = new_failed_modes(model)
-      if (.not. model%setup%is_bimodular()) return
-      self%signs = new_bimodular_sections(model)
+      self%modes = new_failed_modes(plate)
+      if (.not. plate%setup%is_bimodular()) return
+      self%signs = new_bimodular_sections(plate)
       self%free = self%signs%free
       self%mean_change = self%signs%signs%change
     end if
@@ -130,9 +130,9 @@ contains
   end subroutine find_forces
 
   !> Adds the forces of the elements on the layers; history variables of softening plies are accepted. Collective.
-  subroutine add_layer_forces(self, model, motion, force, energies)
+  subroutine add_layer_forces(self, plate, motion, force, energies)
     class(ply_failure_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
     !> Internal forces on the layers, (5, columns of the borders), added to
@@ -144,43 +144,43 @@ contains
     if (allocated(self%bands) .and. (allocated(self%mean_change) .or. .not. self%keeps_stiffness)) then
       self%bands%keeps_damage = self%keeps_stiffness
       ! Before the forces: a restart computes the last forces again, with the strengths that they had.
-      if (.not. self%keeps_stiffness) call self%bands%update_strengths(model)
-      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
+      if (.not. self%keeps_stiffness) call self%bands%update_strengths(plate)
+      call add_internal_force(plate%elements, self%stiffness, plate%setup%mesh%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       if (.not. self%keeps_stiffness) call self%bands%commit_sections(self%stiffness, self%free)
       self%bands%keeps_damage = .false.
     else if (allocated(self%signs)) then
-      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
+      call add_internal_force(plate%elements, self%stiffness, plate%setup%mesh%kinematics, motion, force, energy, &
                               self%signs, self%free, energies)
     else
-      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
+      call add_internal_force(plate%elements, self%stiffness, plate%setup%mesh%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
 
   !> Records the energy dissipated by softening in a step. Collective.
-  subroutine record(self, model, energy)
+  subroutine record(self, plate, energy)
     !> The failures with the trial of the step
     class(ply_failure_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Energy of all modes, of the full plate, the same on every rank
     real(wp), intent(out) :: energy
     real(wp) :: energies(energy_modes)
 
     energy = 0
     if (.not. allocated(self%bands)) return
-    energies = totals_of(model%communicator, self%bands%dissipation_sums())*model%mesh%multiplicity
+    energies = totals_of(plate%communicator, self%bands%dissipation_sums())*plate%mesh%multiplicity
     self%dissipated = self%dissipated + energies
     energy = sum(energies)
   end subroutine record
 
   !> Computes the energy dissipated by softening plies so far in each mode. Collective.
-  subroutine total_dissipation(self, model)
+  subroutine total_dissipation(self, plate)
     class(ply_failure_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     real(wp) :: energies(energy_modes + 1)
 
-    energies = totals_of(model%communicator, self%bands%dissipated())*model%mesh%multiplicity
+    energies = totals_of(plate%communicator, self%bands%dissipated())*plate%mesh%multiplicity
     self%dissipated = energies(:energy_modes)
     self%permanent_shear = energies(energy_modes + 1)
   end subroutine total_dissipation
@@ -219,25 +219,25 @@ contains
   end function failed
 
   !> Failed modes of a ply in all elements.
-  pure function failed_in_elements(self, model, ply) result(failed)
+  pure function failed_in_elements(self, plate, ply) result(failed)
     class(ply_failure_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> True for failed modes, (modes, elements); false in elements without this ply
-    logical :: failed(failure_modes, model%elements%elements)
+    logical :: failed(failure_modes, plate%elements%elements)
     integer :: element
 
     failed = .false.
     do element = 1, size(failed, 2)
-      if (model%stacks(model%stack(element))%has(ply)) failed(:, element) = self%failed(ply, element)
+      if (plate%layup%stacks(plate%layup%stack(element))%has(ply)) failed(:, element) = self%failed(ply, element)
     end do
   end function failed_in_elements
 
   !> Reduced elastic constants of a ply of an element.
-  pure function elasticity(self, model, ply, element)
+  pure function elasticity(self, plate, ply, element)
     class(ply_failure_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
     type(elasticity_t) :: elasticity
@@ -245,7 +245,7 @@ contains
     if (allocated(self%bands)) then
       elasticity = self%bands%elasticity(ply, element)
     else
-      elasticity = self%modes%elasticity(model, ply, element)
+      elasticity = self%modes%elasticity(plate, ply, element)
     end if
   end function elasticity
 
@@ -262,15 +262,15 @@ contains
   end function stressed_volume
 
   !> Plies of an element with their permanent strains.
-  pure function strained_plies(self, model, element) result(plies)
+  pure function strained_plies(self, plate, element) result(plies)
     class(ply_failure_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Element of this rank
     integer, intent(in) :: element
     type(ply_t), allocatable :: plies(:)
     integer :: i
 
-    associate (stack => model%stacks(model%stack(element)))
+    associate (stack => plate%layup%stacks(plate%layup%stack(element)))
       plies = stack%plies
       if (allocated(self%bands)) &
         plies%free_strain(3) = [(self%bands%states%permanent_shear(stack%number(i), element), i=1, size(plies))]
@@ -290,24 +290,24 @@ contains
   end function carried_by_cracks
 
   !> Reduced elastic constants of the plies of an element.
-  pure function elasticities(self, model, element)
+  pure function elasticities(self, plate, element)
     class(ply_failure_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Element of this rank
     integer, intent(in) :: element
     !> Those of the element's plies
     type(elasticity_t), allocatable :: elasticities(:)
     integer :: i
 
-    associate (plies => model%stacks(model%stack(element))%number)
-      elasticities = [(self%elasticity(model, plies(i), element), i=1, size(plies))]
+    associate (plies => plate%layup%stacks(plate%layup%stack(element))%number)
+      elasticities = [(self%elasticity(plate, plies(i), element), i=1, size(plies))]
     end associate
   end function elasticities
 
   !> Finds new failures in an accepted state and reduces the stiffness. Collective.
-  subroutine grow(self, model, displacement)
+  subroutine grow(self, plate, displacement)
     class(ply_failure_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     logical, allocatable :: failing(:)
@@ -315,84 +315,84 @@ contains
 
     if (allocated(self%bands)) then
       call self%bands%commit()
-      call self%bands%update_strengths(model)
+      call self%bands%update_strengths(plate)
       return
     end if
-    if (.not. model%setup%ply_damage%is_present) return
-    call self%modes%find(model, self%stiffness, displacement, failing)
-    self%softened = model%communicator%any(any(failing))
+    if (.not. plate%setup%ply_damage%is_present) return
+    call self%modes%find(plate, self%stiffness, displacement, failing)
+    self%softened = plate%communicator%any(any(failing))
     if (.not. self%softened) return
     do element = 1, size(failing)
-      if (failing(element)) call soften(self, model, element)
+      if (failing(element)) call soften(self, plate, element)
     end do
   end subroutine grow
 
   !> Computes the reduced stiffness of an element.
-  subroutine soften(self, model, element)
+  subroutine soften(self, plate, element)
     type(ply_failure_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Element of this rank
     integer, intent(in) :: element
 
-    associate (stack => model%stacks(model%stack(element)))
-      self%stiffness(lane_of(element), :, batch_of(element)) = stack%stiffness(self%modes%elasticities(model, element))
+    associate (stack => plate%layup%stacks(plate%layup%stack(element)))
+      self%stiffness(lane_of(element), :, batch_of(element)) = stack%stiffness(self%modes%elasticities(plate, element))
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
-        free_resultants(stack%plies, self%elasticities(model, element))
-      if (allocated(self%signs)) call self%signs%reduce(element, self%elasticities(model, element), &
+        free_resultants(stack%plies, self%elasticities(plate, element))
+      if (allocated(self%signs)) call self%signs%reduce(element, self%elasticities(plate, element), &
                                                         self%free(lane_of(element), :, batch_of(element)))
     end associate
   end subroutine soften
 
   !> Computes the reduced stiffness of elements that were split into layers, from their plies.
-  subroutine restack(self, model, is_split)
+  subroutine restack(self, plate, is_split)
     !> The failures, loaded from elements with more plies
     class(ply_failure_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> True for these elements, (elements)
     logical, intent(in) :: is_split(:)
     integer :: element
 
-    if (.not. model%setup%ply_damage%is_present) return
+    if (.not. plate%setup%ply_damage%is_present) return
     do element = 1, size(is_split)
       if (.not. is_split(element)) cycle
-      associate (stack => model%stacks(model%stack(element)), &
+      associate (stack => plate%layup%stacks(plate%layup%stack(element)), &
                  left => self%stiffness(lane_of(element), :, batch_of(element)))
-        left = model%elements%stiffness(lane_of(element), :, batch_of(element))
+        left = plate%elements%stiffness(lane_of(element), :, batch_of(element))
         if (allocated(self%bands)) then
           ! Softening does not reduce the transverse shear stiffness.
-          left(:18) = in_plane_section(stack%plies, self%elasticities(model, element))
+          left(:18) = in_plane_section(stack%plies, self%elasticities(plate, element))
         else
-          call soften(self, model, element)
+          call soften(self, plate, element)
         end if
       end associate
     end do
   end subroutine restack
 
   !> Saves or loads the failures.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(ply_failure_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: mode, element, i
 
-    call self%modes%visit(archive, model)
+    call self%modes%visit(archive, plate)
     if (allocated(self%bands)) then
-      call self%bands%visit(archive, model)
+      call self%bands%visit(archive, plate)
       do mode = 1, energy_modes
         call archive%item('ply_failure/dissipated_'//to_text(mode), self%dissipated(mode))
       end do
-      if (model%setup%ply_damage%permanent_shear) &
+      if (plate%setup%ply_damage%permanent_shear) &
         call archive%item('ply_failure/dissipated_by_shear', self%permanent_shear)
     end if
-    if (model%setup%ply_damage%is_present) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
-    if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%ply_damage%is_present)) return
-    do element = 1, model%elements%elements
-      associate (plies => model%stacks(model%stack(element))%number)
+    if (plate%setup%ply_damage%is_present) call visit_stiffness(archive, 'ply_failure/stiffness', plate, self%stiffness)
+    if (.not. (archive%loading .and. allocated(self%free) .and. plate%setup%ply_damage%is_present)) return
+    do element = 1, plate%elements%elements
+      associate (plies => plate%layup%stacks(plate%layup%stack(element))%number)
         self%free(lane_of(element), :, batch_of(element)) = &
-          free_resultants(self%strained_plies(model, element), self%elasticities(model, element))
+          free_resultants(self%strained_plies(plate, element), self%elasticities(plate, element))
         if (.not. allocated(self%signs)) cycle
         if (any([(self%modes%failed(plies(i), element), i=1, size(plies))])) &
-          call self%signs%reduce(element, self%elasticities(model, element), &
+          call self%signs%reduce(element, self%elasticities(plate, element), &
                                  self%free(lane_of(element), :, batch_of(element)))
       end associate
     end do

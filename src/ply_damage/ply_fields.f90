@@ -45,8 +45,8 @@ module ply_fields
 contains
 
   !> Writes the requested fields.
-  subroutine write_ply_fields(model, plies, displacement, output, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_ply_fields(plate, plies, displacement, output, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
     !> Displacement, ghosts up to date, (5, points)
@@ -63,20 +63,20 @@ contains
     integer :: ply, place, i
 
     requested = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
-    if (any(requested)) strains = element_strains(model, plies, displacement)
-    do ply = 1, model%plies
+    if (any(requested)) strains = element_strains(plate, plies, displacement)
+    do ply = 1, plate%layup%plies
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%requests(field_ply_damage) .and. model%setup%ply_damage%is_present) then
-          call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
+        if (output%requests(field_ply_damage) .and. plate%setup%ply_damage%is_present) then
+          call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(plate, ply)), error)
           if (allocated(plies%bands)) &
-            call fields%write_cell_field(name//'fibres_crushed', crushed_in(model, plies%bands, ply), error)
-          if (model%setup%ply_damage%scatters()) &
-            call fields%write_cell_field(name//'fibre_strength', strengths_in(model, plies%bands, ply), error)
-          lost = stiffness_lost(model, plies, ply)
+            call fields%write_cell_field(name//'fibres_crushed', crushed_in(plate, plies%bands, ply), error)
+          if (plate%setup%ply_damage%scatters()) &
+            call fields%write_cell_field(name//'fibre_strength', strengths_in(plate, plies%bands, ply), error)
+          lost = stiffness_lost(plate, plies, ply)
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
           call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)
         end if
-        if (any(requested)) stresses = stresses_of_ply(model, plies, strains, ply)
+        if (any(requested)) stresses = stresses_of_ply(plate, plies, strains, ply)
         do place = 1, 3
           if (.not. requested(place)) cycle
           do i = 1, merge(5, 3, place == 1)
@@ -88,61 +88,61 @@ contains
   end subroutine write_ply_fields
 
   !> 1 in elements in which the fibres of a ply have failed by compression, else 0.
-  pure function crushed_in(model, bands, ply) result(crushed)
-    class(composite_plate_t), intent(in) :: model
+  pure function crushed_in(plate, bands, ply) result(crushed)
+    type(composite_plate_t), intent(in) :: plate
     !> Softening plies
     type(crack_band_sections_t), intent(in) :: bands
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> (1, elements)
-    real(wp) :: crushed(1, model%elements%elements)
+    real(wp) :: crushed(1, plate%elements%elements)
     integer :: element
 
     crushed = 0
     do element = 1, size(crushed, 2)
-      if (.not. model%stacks(model%stack(element))%has(ply)) cycle
+      if (.not. plate%layup%stacks(plate%layup%stack(element))%has(ply)) cycle
       if (bands%states%fibres_crushed(ply, element)) crushed(1, element) = 1
     end do
   end function crushed_in
 
   !> Tensile strength of the fibres of a ply in each element.
-  pure function strengths_in(model, bands, ply) result(strengths)
-    class(composite_plate_t), intent(in) :: model
+  pure function strengths_in(plate, bands, ply) result(strengths)
+    type(composite_plate_t), intent(in) :: plate
     !> Softening plies
     type(crack_band_sections_t), intent(in) :: bands
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> (1, elements)
-    real(wp) :: strengths(1, model%elements%elements)
+    real(wp) :: strengths(1, plate%elements%elements)
     integer :: element, at
 
     strengths = 0
     do element = 1, size(strengths, 2)
-      if (.not. model%stacks(model%stack(element))%has(ply)) cycle
+      if (.not. plate%layup%stacks(plate%layup%stack(element))%has(ply)) cycle
       at = bands%states%at(ply, element)
       strengths(1, element) = bands%bands(at - bands%states%offset(element))%along(1)*bands%drawn%factor(at)
     end do
   end function strengths_in
 
   !> Lost fractions of E1 and E2 of a ply.
-  pure function stiffness_lost(model, plies, ply) result(lost)
-    class(composite_plate_t), intent(in) :: model
+  pure function stiffness_lost(plate, plies, ply) result(lost)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> From 0 to 1, (2, elements)
-    real(wp) :: lost(2, model%elements%elements)
+    real(wp) :: lost(2, plate%elements%elements)
     type(elasticity_t) :: left
     integer :: element
 
     lost = 0
     do element = 1, size(lost, 2)
       ! Softening plies show the damage of the cell in all of its layers.
-      associate (laminate => model%laminates(model%mesh%layers(model%stack(element))%laminate))
+      associate (laminate => plate%layup%laminates(plate%mesh%layers(plate%layup%stack(element))%laminate))
         if (.not. laminate%has(ply)) cycle
-        if (.not. (allocated(plies%bands) .or. model%stacks(model%stack(element))%has(ply))) cycle
-        left = plies%elasticity(model, ply, element)
+        if (.not. (allocated(plies%bands) .or. plate%layup%stacks(plate%layup%stack(element))%has(ply))) cycle
+        left = plies%elasticity(plate, ply, element)
         associate (whole => laminate%plies(laminate%place(ply))%elasticity)
           lost(:, element) = 1 - [left%e1, left%e2]/[whole%e1, whole%e2]
         end associate

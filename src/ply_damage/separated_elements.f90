@@ -51,13 +51,13 @@ contains
   end subroutine separate
 
   !> Saves or loads which elements are separated.
-  subroutine visit_separated(sections, archive, model)
+  subroutine visit_separated(sections, archive, plate)
     type(crack_band_sections_t), intent(inout) :: sections
     class(archive_t), intent(inout) :: archive
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     logical :: separated(size(sections%area))
 
-    call sections%joined%visit(archive, model, separated)
+    call sections%joined%visit(archive, plate, separated)
     if (archive%loading) call separate(sections, separated)
   end subroutine visit_separated
 end module separated_elements

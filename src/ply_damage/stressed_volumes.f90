@@ -57,8 +57,8 @@ module stressed_volumes
 contains
 
   !> Volumes of plies without load.
-  function new_stressed_volumes(model, bands, states) result(self)
-    class(composite_plate_t), intent(in) :: model
+  function new_stressed_volumes(plate, bands, states) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
     !> States of the plies of all elements
@@ -66,18 +66,18 @@ contains
     type(stressed_volumes_t) :: self
     integer :: i, ply, entry, range(2)
 
-    self%damage = model%setup%ply_damage
-    self%plate = product(model%setup%plate%length)*model%thickness
+    self%damage = plate%setup%ply_damage
+    self%plate = product(plate%setup%plate%length)*plate%layup%thickness
     self%xt = bands%along(1)
     allocate (self%stress(size(states%trial)), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
     allocate (self%block(size(bands)))
     self%number = states%number
     entry = 0
-    do i = 1, size(model%laminates)
-      do ply = 1, size(model%laminates(i)%plies)
+    do i = 1, size(plate%layup%laminates)
+      do ply = 1, size(plate%layup%laminates(i)%plies)
         entry = entry + 1
-        range = block_of(model%laminates(i)%plies, ply)
-        self%block(entry) = findloc(states%number, model%laminates(i)%number(range(1)), dim=1)
+        range = block_of(plate%layup%laminates(i)%plies, ply)
+        self%block(entry) = findloc(states%number, plate%layup%laminates(i)%number(range(1)), dim=1)
       end do
     end do
   end function new_stressed_volumes

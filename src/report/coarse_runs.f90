@@ -53,20 +53,20 @@ contains
     call choose_stepper(coarse%stepping, stepper)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
-    coarse_run%record = new_run_record(model)
-    checks = stepper%steps_between_checks(model%mesh%elements())
+    coarse_run%record = new_run_record(model%plate)
+    checks = stepper%steps_between_checks(model%plate%mesh%elements())
     do while (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
       ! As the run itself: contact areas and adaptive layers follow the state.
       call stepper%advance_with_layers(model, coarse%linear_solver, &
                                end_of_run(coarse%stepping, coarse_run%record%contact_end), switched, error)
       if (allocated(error)) exit
-      call coarse_run%record%observe(model, stepper%now, stepper%steps_between_stages())
+      call coarse_run%record%observe(model%plate, stepper%now, stepper%steps_between_stages())
       if (modulo(stepper%now%step, checks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do
     coarse_run%done = .not. (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
-    coarse_run%velocity = stepper%now%impactor%velocity
-    figures = figures_of(model, stepper%now%interfaces)
+    coarse_run%velocity = stepper%now%impact%impactor%velocity
+    figures = figures_of(model%plate, stepper%now%interfaces)
     coarse_run%area = sum(figures%area)
     call stepper%operator%release()
   end subroutine run_coarse_model

@@ -44,43 +44,43 @@ module compressed_damage
 contains
 
   !> Damage of a state. Collective.
-  function damage_of(model, now, along) result(damage)
-    class(composite_plate_t), intent(in) :: model
+  function damage_of(plate, now, along) result(damage)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Axis of the load
     integer, intent(in) :: along
     type(compressed_damage_t) :: damage
-    type(collected_t) :: interfaces(size(model%mesh%zones)), plies(model%plies)
+    type(collected_t) :: interfaces(size(plate%mesh%zones)), plies(plate%layup%plies)
     integer :: i
 
     do i = 1, size(interfaces)
-      interfaces(i) = delaminated(model, now, along, i)
+      interfaces(i) = delaminated(plate, now, along, i)
     end do
     do i = 1, size(plies)
-      plies(i) = fibres_failed(model, now, along, i)
+      plies(i) = fibres_failed(plate, now, along, i)
     end do
-    damage%interfaces = figures_of(model, along, interfaces)
-    damage%plies = figures_of(model, along, plies)
+    damage%interfaces = figures_of(plate, along, interfaces)
+    damage%plies = figures_of(plate, along, plies)
   end function damage_of
 
   !> Length between the supports of the plate along an axis: that of the window of its frame, or of the plate.
-  pure real(wp) function between_supports(model, axis) result(length)
-    class(composite_plate_t), intent(in) :: model
+  pure real(wp) function between_supports(plate, axis) result(length)
+    type(composite_plate_t), intent(in) :: plate
     !> The axis
     integer, intent(in) :: axis
     integer :: i
 
-    length = model%setup%plate%length(axis)
-    do i = 1, size(model%setup%supports)
-      associate (support => model%setup%supports(i))
+    length = plate%setup%plate%length(axis)
+    do i = 1, size(plate%setup%supports)
+      associate (support => plate%setup%supports(i))
         if (support%shape == window_rectangle) length = min(length, support%window(axis))
       end associate
     end do
   end function between_supports
 
   !> Delamination of an interface: failed nodes of a cohesive law, or cells released by fronts.
-  function delaminated(model, now, along, zone) result(collected)
-    class(composite_plate_t), intent(in) :: model
+  function delaminated(plate, now, along, zone) result(collected)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Axis of the load, and interface
     integer, intent(in) :: along, zone
@@ -88,26 +88,26 @@ contains
     type(collected_t) :: collected
     integer :: i, column, row
 
-    allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
-    associate (mesh => model%mesh, cohesive => now%interfaces%cohesive)
-      if (model%setup%delaminations(zone)%law == law_cohesive) then
+    allocate (collected%rows(plate%mesh%cells(3 - along)), source=0.0_wp)
+    associate (mesh => plate%mesh, cohesive => now%interfaces%cohesive)
+      if (plate%setup%delaminations(zone)%law == law_cohesive) then
         if (.not. allocated(cohesive%cohesive)) return
-        do i = 1, model%distribution%owned
-          if (model%zone(i) /= zone .or. .not. cohesive%cohesive(i)) cycle
+        do i = 1, plate%distribution%owned
+          if (plate%zone(i) /= zone .or. .not. cohesive%cohesive(i)) cycle
           if (cohesive%points(i)%damage < 1) cycle
-          associate (node => mesh%point_node(model%distribution%points(i)))
-            call collected%add(model%contact_area(i), abs(mesh%node_coordinates(along, node)), &
+          associate (node => mesh%point_node(plate%distribution%points(i)))
+            call collected%add(plate%interfaces%contact_area(i), abs(mesh%node_coordinates(along, node)), &
                                row_of(mesh%lines_of(node), along))
           end associate
         end do
         return
       end if
       ! Every rank has all cells of a front; only the first rank adds them.
-      if (.not. model%communicator%is_root()) return
+      if (.not. plate%communicator%is_root()) return
       associate (region => now%interfaces%contact%regions(zone))
         do row = region%rows(1), region%rows(2)
           do column = region%columns(1), region%columns(2)
-            if (region%is_delaminated(column, row)) call add_cell(collected, model, along, [column, row])
+            if (region%is_delaminated(column, row)) call add_cell(collected, plate, along, [column, row])
           end do
         end do
       end associate
@@ -115,8 +115,8 @@ contains
   end function delaminated
 
   !> Fibre failure of a ply.
-  function fibres_failed(model, now, along, ply) result(collected)
-    class(composite_plate_t), intent(in) :: model
+  function fibres_failed(plate, now, along, ply) result(collected)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Axis of the load, and ply
     integer, intent(in) :: along, ply
@@ -124,12 +124,12 @@ contains
     type(collected_t) :: collected
     integer :: i
 
-    allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
-    if (.not. model%setup%ply_damage%is_present) return
-    associate (failed => now%plies%failed_in_elements(model, ply), mesh => model%mesh)
-      do i = 1, model%elements%elements
+    allocate (collected%rows(plate%mesh%cells(3 - along)), source=0.0_wp)
+    if (.not. plate%setup%ply_damage%is_present) return
+    associate (failed => now%plies%failed_in_elements(plate, ply), mesh => plate%mesh)
+      do i = 1, plate%elements%elements
         if (.not. failed(fibre_failure, i)) cycle
-        call add_cell(collected, model, along, mesh%place_of(mesh%element_cell(model%distribution%elements(i))))
+        call add_cell(collected, plate, along, mesh%place_of(mesh%element_cell(plate%distribution%elements(i))))
       end do
     end associate
   end function fibres_failed
@@ -146,17 +146,17 @@ contains
   end function row_of
 
   !> Adds a failed cell.
-  pure subroutine add_cell(collected, model, along, place)
+  pure subroutine add_cell(collected, plate, along, place)
     type(collected_t), intent(inout) :: collected
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Axis of the load
     integer, intent(in) :: along
     !> Column and row of the cell
     integer, intent(in) :: place(2)
     real(wp) :: middle(2)
 
-    middle = [sum(model%mesh%along(1)%ends(place(1))), sum(model%mesh%along(2)%ends(place(2)))]/2
-    call collected%add(model%mesh%cell_area(place), abs(middle(along)), place(3 - along))
+    middle = [sum(plate%mesh%along(1)%ends(place(1))), sum(plate%mesh%along(2)%ends(place(2)))]/2
+    call collected%add(plate%mesh%cell_area(place), abs(middle(along)), place(3 - along))
   end subroutine add_cell
 
   !> Adds a failed place.
@@ -174,8 +174,8 @@ contains
   end subroutine add
 
   !> Quantities from the contributions of all ranks. Collective.
-  function figures_of(model, along, collected) result(figures)
-    class(composite_plate_t), intent(in) :: model
+  function figures_of(plate, along, collected) result(figures)
+    type(composite_plate_t), intent(in) :: plate
     !> Axis of the load
     integer, intent(in) :: along
     !> Contribution of this rank for each interface or ply
@@ -186,25 +186,25 @@ contains
     real(wp), allocatable :: rows(:)
     integer :: i
 
-    sums = totals_of(model%communicator, [collected%area, collected%moment])
+    sums = totals_of(plate%communicator, [collected%area, collected%moment])
     reach = collected%reach
-    call model%communicator%maximum(reach)
+    call plate%communicator%maximum(reach)
     figures = 0
     do i = 1, size(collected)
       rows = collected(i)%rows
-      call model%communicator%maximum(rows)
+      call plate%communicator%maximum(rows)
       if (.not. sums(i) > 0) cycle
-      figures(figure_area, i) = sums(i)*model%mesh%multiplicity
+      figures(figure_area, i) = sums(i)*plate%mesh%multiplicity
       figures(figure_mean, i) = sums(size(collected) + i)/sums(i)
       figures(figure_reach, i) = reach(i)
-      figures(figure_width, i) = share_of_width(model, along, rows > 0)
+      figures(figure_width, i) = share_of_width(plate, along, rows > 0)
     end do
   end function figures_of
 
   !> Fraction of the width between the supports with failure in its rows. A strip of the plate's thickness is excluded
   !> at each side, where supports prevent opening.
-  pure real(wp) function share_of_width(model, along, failed) result(share)
-    class(composite_plate_t), intent(in) :: model
+  pure real(wp) function share_of_width(plate, along, failed) result(share)
+    type(composite_plate_t), intent(in) :: plate
     !> Axis of the load
     integer, intent(in) :: along
     !> True for rows with failure
@@ -212,12 +212,12 @@ contains
     real(wp) :: widths(size(failed)), middles(size(failed))
     logical :: either(size(failed))
 
-    widths = model%mesh%along(3 - along)%sides()
-    middles = model%mesh%along(3 - along)%middles()
+    widths = plate%mesh%along(3 - along)%sides()
+    middles = plate%mesh%along(3 - along)%middles()
     either = failed
     ! With point symmetry failure in a row implies failure in its image.
-    if (model%setup%plate%symmetry == symmetry_point .and. along == 1) either = failed .or. failed(size(failed):1:-1)
-    widths = merge(widths, 0.0_wp, abs(middles) < between_supports(model, 3 - along)/2 - model%thickness)
+    if (plate%setup%plate%symmetry == symmetry_point .and. along == 1) either = failed .or. failed(size(failed):1:-1)
+    widths = merge(widths, 0.0_wp, abs(middles) < between_supports(plate, 3 - along)/2 - plate%layup%thickness)
     share = 0
     if (sum(widths) > 0) share = sum(widths, mask=either)/sum(widths)
   end function share_of_width

@@ -44,20 +44,20 @@ contains
   end function part_of
 
   !> Writes points at the heights of their layers, and elements.
-  subroutine write_mesh(model, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_mesh(plate, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     type(fields_file_t), intent(inout) :: fields
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: coordinates(3, model%distribution%owned)
-    integer :: values(3, model%elements%elements), i
+    real(wp) :: coordinates(3, plate%distribution%owned)
+    integer :: values(3, plate%elements%elements), i
 
-    associate (mesh => model%mesh, partition => model%distribution)
+    associate (mesh => plate%mesh, partition => plate%distribution)
       coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(partition%points(:partition%owned)))
-      coordinates(3, :) = heights(model)
+      coordinates(3, :) = heights(plate)
       values(:2, :) = reshape([(mesh%plies_of(partition%elements(i)), i=1, size(values, 2))], [2, size(values, 2)])
       ! The layer of a doubler lies below the last ply of the laminate, and has none of them.
       values(2, :) = min(values(2, :), mesh%plies)
-      values(3, :) = starters_above(model)
+      values(3, :) = starters_above(plate)
       call fields%write_mesh(global_numbers_t(partition%points(:partition%owned), mesh%points()), &
                              global_numbers_t(partition%elements, mesh%elements()), coordinates, &
                              mesh%connectivity(:, partition%elements), &
@@ -67,60 +67,60 @@ contains
 
   !> Heights at which the owned points are drawn: the middle of their layer, or of the laminate where there is one
   !> layer, on the stress-free shape.
-  pure function heights(model) result(z)
-    class(composite_plate_t), intent(in) :: model
+  pure function heights(plate) result(z)
+    type(composite_plate_t), intent(in) :: plate
     !> Height of each owned point
-    real(wp) :: z(model%distribution%owned)
+    real(wp) :: z(plate%distribution%owned)
     integer :: i
 
-    associate (mesh => model%mesh, partition => model%distribution)
-      z = [(initial_deflection(model%setup%plate, mesh%node_coordinates(:, mesh%point_node(partition%points(i)))), &
+    associate (mesh => plate%mesh, partition => plate%distribution)
+      z = [(initial_deflection(plate%setup%plate, mesh%node_coordinates(:, mesh%point_node(partition%points(i)))), &
             i=1, partition%owned)]
     end associate
-    if (model%map%layered) z = z + middles_of_layers(model)
+    if (plate%map%layered) z = z + middles_of_layers(plate)
   end function heights
 
   !> Heights of the middles of layers above the mid-plane.
-  pure function middles_of_layers(model) result(z)
-    class(composite_plate_t), intent(in) :: model
+  pure function middles_of_layers(plate) result(z)
+    type(composite_plate_t), intent(in) :: plate
     !> Height of each owned point
-    real(wp) :: z(model%distribution%owned)
+    real(wp) :: z(plate%distribution%owned)
     integer :: i, point, last
 
     z = 0
-    associate (mesh => model%mesh)
-      do i = 1, model%distribution%owned
-        point = model%distribution%points(i)
+    associate (mesh => plate%mesh)
+      do i = 1, plate%distribution%owned
+        point = plate%distribution%points(i)
         last = mesh%first_point(mesh%point_node(point) + 1) - 1
         if (mesh%first_point(mesh%point_node(point)) == last) cycle
-        z(i) = -model%thickness/2
-        if (model%zone(i) > 0) z(i) = model%map%height(i)
+        z(i) = -plate%layup%thickness/2
+        if (plate%zone(i) > 0) z(i) = plate%map%height(i)
         if (point < last) then
-          z(i) = (z(i) + model%map%height(model%distribution%local(point + 1)))/2
+          z(i) = (z(i) + plate%map%height(plate%distribution%local(point + 1)))/2
         else if (mesh%bonds_doubler(point)) then
           z(i) = z(i) + mesh%zones(mesh%point_zone(point))%thickness/2
         else
-          z(i) = (z(i) + model%thickness/2)/2
+          z(i) = (z(i) + plate%layup%thickness/2)/2
         end if
       end do
     end associate
   end function middles_of_layers
 
   !> Writes the requested fields of the state reached, if their physics is modelled.
-  subroutine write_fields(model, stepper, output, fields, error)
-    class(composite_plate_t), intent(in) :: model
+  subroutine write_fields(plate, stepper, output, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     class(stepper_t), intent(in) :: stepper
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
     type(error_t), allocatable, intent(out) :: error
 
-    if (.not. fields%is_on(model%mesh%points())) call write_mesh(model, fields, error)
+    if (.not. fields%is_on(plate%mesh%points())) call write_mesh(plate, fields, error)
     associate (now => stepper%now)
       call fields%begin(shown_time(now%time), now%step, error)
-      call write_motion_fields(model, now%motion, output, fields, error)
-      call write_interface_fields(model, now%plies%stiffness, now%interfaces, now%motion, output, fields, error)
-      call write_stringer_fields(model, now%motion%displacement, output, fields, error)
-      call write_ply_fields(model, now%plies, now%motion%displacement, output, fields, error)
+      call write_motion_fields(plate, now%motion, output, fields, error)
+      call write_interface_fields(plate, now%plies%stiffness, now%interfaces, now%motion, output, fields, error)
+      call write_stringer_fields(plate, now%motion%displacement, output, fields, error)
+      call write_ply_fields(plate, now%plies, now%motion%displacement, output, fields, error)
       call fields%finish(error)
     end associate
   end subroutine write_fields

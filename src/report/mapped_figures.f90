@@ -49,9 +49,9 @@ module mapped_figures
 contains
 
   !> Stores the quantities of a state; of a plate that is cut, the first time before the cut. Collective.
-  subroutine note(self, model, state, moment)
+  subroutine note(self, plate, state, moment)
     class(mapped_figures_t), intent(inout) :: self
-    class(composite_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(inout) :: state
     !> before_mapping, after_mapping or before_cutting
     integer, intent(in) :: moment
@@ -59,24 +59,24 @@ contains
 
     if (.not. allocated(self%plies)) then
       columns = max(moment, after_mapping)
-      associate (zones => size(model%mesh%zones))
+      associate (zones => size(plate%mesh%zones))
         allocate (self%area(zones, columns), self%energy(zones, columns), self%plies(3, columns), source=0.0_wp)
       end associate
     end if
     if (moment <= after_mapping) self%strain(moment) = state%ledger%strain
-    self%area(:, moment) = state%interfaces%cohesive%area(model)
-    self%energy(:, moment) = state%interfaces%cohesive%energy(model)
+    self%area(:, moment) = state%interfaces%cohesive%area(plate)
+    self%energy(:, moment) = state%interfaces%cohesive%energy(plate)
     if (moment == before_mapping) self%dissipated = sum(self%energy(:, moment))
     if (.not. allocated(state%plies%bands)) return
-    self%plies(:2, moment) = damage_of_plies(model, state)
-    call state%plies%total_dissipation(model)
+    self%plies(:2, moment) = damage_of_plies(plate, state)
+    call state%plies%total_dissipation(plate)
     self%plies(3, moment) = sum(state%plies%dissipated) + state%plies%permanent_shear
     if (moment == before_mapping) self%dissipated = self%dissipated + self%plies(3, moment)
   end subroutine note
 
   !> Areas of all plies times the damage of fibres and of the matrix, of the full plate. Collective.
-  function damage_of_plies(model, state) result(areas)
-    class(composite_plate_t), intent(in) :: model
+  function damage_of_plies(plate, state) result(areas)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: state
     !> Of fibres and of the matrix
     real(wp) :: areas(2)
@@ -84,8 +84,8 @@ contains
     real(wp) :: damage(2)
     integer :: i, ply
 
-    do i = 1, model%elements%elements
-      associate (stack => model%stacks(model%stack(i)), area => state%plies%bands%area(i))
+    do i = 1, plate%elements%elements
+      associate (stack => plate%layup%stacks(plate%layup%stack(i)), area => state%plies%bands%area(i))
         do ply = 1, size(stack%number)
           damage = state%plies%bands%states%accepted_damage(stack%number(ply), i)
           call fibres%add(area*damage(1))
@@ -93,7 +93,7 @@ contains
         end do
       end associate
     end do
-    areas = totals_of(model%communicator, [fibres, matrix])*model%mesh%multiplicity
+    areas = totals_of(plate%communicator, [fibres, matrix])*plate%mesh%multiplicity
   end function damage_of_plies
 
   !> True for a plate cut from a larger one.

@@ -153,9 +153,9 @@ contains
     real(wp), allocatable :: loads(:, :)
 
     allocate (loads, mold=now%motion%displacement)
-    call model%line_forces(now%motion%displacement, now%load_factor, loads)
-    if (allocated(model%pressure)) &
-      loads = loads + model%setup%pressure_factor(now%time, now%load_factor)*model%pressure
+    call model%loads%line_forces(now%motion%displacement, now%load_factor, loads)
+    if (allocated(model%loads%pressure)) &
+      loads = loads + model%plate%setup%pressure_factor(now%time, now%load_factor)*model%loads%pressure
   end function loads_on
 
   !> Row of the state reached. Collective.
@@ -169,19 +169,20 @@ contains
 
     associate (now => stepper%now)
       loads = loads_on(model, now)
-      row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
+      row = [motion_values(now), area_values(model%plate, now%interfaces), ledger_values(now%ledger), &
              step_values(now, stepper%last_step()), &
-             release_values(model, now%interfaces, now%motion%displacement), &
+             release_values(model%plate, now%interfaces, now%motion%displacement), &
              iteration_values(now, stepper%rejected_steps()), operator_values(stepper%operator), &
-             ply_values(model, now%plies), border_values(model, now%interfaces), &
+             ply_values(model%plate, now%plies), border_values(model%plate, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
-             real(size(record%warning_kinds), wp), now%pressed_area(model), now%ledger%damping, &
+             real(size(record%warning_kinds), wp), now%impact%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &
-             dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent]
-      row = [pack(row, apply_to(model%setup)), interface_values(model, now%interfaces)]
+             dent_depth(model%plate, now%motion%displacement) + now%impact%indentation%dent, &
+             now%impact%indentation%dent]
+      row = [pack(row, apply_to(model%plate%setup)), interface_values(model%plate, now%interfaces)]
       lines = line_values(model, now)
-      row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement), &
-             stringer_values(model, now%motion%displacement)]
+      row = [row, lines, end_values(model, lines), gauge_strains(model%plate, now%motion%displacement), &
+             stringer_values(model%plate, now%motion%displacement)]
     end associate
     if (record%filter%frequency > 0) row = [row, record%filter%force]
     row(1) = shown_time(row(1))

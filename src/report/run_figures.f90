@@ -11,7 +11,8 @@ module run_figures
   use interface_figures, only: figures_of, interface_figures_t
   use kinds, only: wp
   use line_columns, only: pressed_axis
-  use plate_loads, only: loaded_plate_t
+  use composite_plates, only: composite_plate_t
+  use models, only: model_t
   use ply_damage_parameters, only: failure_modes
   use projected_areas, only: area_rules, projected_areas_of
   use rank_totals, only: totals_of
@@ -64,50 +65,50 @@ contains
 
   !> Results of the state reached. Collective.
   subroutine find_figures(model, now, figures)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> Its results
     type(run_figures_t), intent(out) :: figures
     real(wp) :: bending, toughness(2)
     integer :: zone, zones, along, ply
 
-    figures%interfaces = figures_of(model, now%interfaces)
-    figures%projected_areas = projected_areas_of(model, now%interfaces)
-    figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
-    figures%failures = failed_counts(model, now%plies)
-    figures%failed_area = failed_areas(model, now%plies)
-    figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plies)]
-    if (model%setup%has_rates()) figures%strengthening = mean_strengthening(model, now%plies%bands)
+    figures%interfaces = figures_of(model%plate, now%interfaces)
+    figures%projected_areas = projected_areas_of(model%plate, now%interfaces)
+    figures%dent = [dent_depth(model%plate, now%motion%displacement), 0.0_wp] + now%impact%indentation%dent
+    figures%failures = failed_counts(model%plate, now%plies)
+    figures%failed_area = failed_areas(model%plate, now%plies)
+    figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plate%layup%plies)]
+    if (model%plate%setup%has_rates()) figures%strengthening = mean_strengthening(model%plate, now%plies%bands)
     along = pressed_axis(model)
     if (along > 0) then
-      figures%compressed = damage_of(model, now, along)
-      figures%length = between_supports(model, along)
-      figures%thickness = model%thickness
-      figures%skin_area = model%setup%plate%length(3 - along)*model%thickness
-      figures%skin_share = skin_share(model%setup, along)
+      figures%compressed = damage_of(model%plate, now, along)
+      figures%length = between_supports(model%plate, along)
+      figures%thickness = model%plate%layup%thickness
+      figures%skin_area = model%plate%setup%plate%length(3 - along)*model%plate%layup%thickness
+      figures%skin_share = skin_share(model%plate%setup, along)
     end if
     zones = size(figures%interfaces)
-    bending = effective_bending_stiffness(model%bending_section%stiffness)
+    bending = effective_bending_stiffness(model%plate%layup%bending_section%stiffness)
     allocate (figures%threshold(zones))
     do zone = 1, zones
-      toughness = toughnesses(model%setup%delaminations(zone))
+      toughness = toughnesses(model%plate%setup%delaminations(zone))
       figures%threshold(zone) = threshold_force(bending, toughness(2), zones)
     end do
     if (zones /= 1) return
-    associate (starter => model%setup%delaminations(1)%starter, patch => model%setup%mesh%patch)
+    associate (starter => model%plate%setup%delaminations(1)%starter, patch => model%plate%setup%mesh%patch)
       if (starter > 0) figures%starter_threshold = figures%threshold(1)*patch_factor(patch, starter**2)
     end associate
   end subroutine find_figures
 
   !> Mean factor of the strengths of cracked matrix by the strain rate; 0: no matrix has cracked. Collective.
-  real(wp) function mean_strengthening(model, bands) result(factor)
-    class(loaded_plate_t), intent(in) :: model
+  real(wp) function mean_strengthening(plate, bands) result(factor)
+    type(composite_plate_t), intent(in) :: plate
     !> The plies
     type(crack_band_sections_t), intent(in) :: bands
     real(wp) :: totals(2)
 
     factor = 0
-    totals = totals_of(model%communicator, strengthened_so_far(bands%states, bands%plies, bands%area))
+    totals = totals_of(plate%communicator, strengthened_so_far(bands%states, bands%plies, bands%area))
     if (totals(1) > 0) factor = totals(2)/totals(1)
   end function mean_strengthening
 

@@ -9,7 +9,8 @@ module run_records
   use kinds, only: wp
   use mapped_figures, only: mapped_figures_t
   use line_columns, only: end_values, line_values, pressed_axis
-  use plate_loads, only: loaded_plate_t
+  use composite_plates, only: composite_plate_t
+  use models, only: model_t
   use output_clocks, only: shown_time
   use placed_gauges, only: back_to_back, gauge_strains, percent_bending
   use projected_areas, only: area_dissipated, area_rules, projected_areas_of
@@ -78,12 +79,12 @@ module run_records
 contains
 
   !> The record at the start of a run.
-  pure function new_run_record(model) result(self)
-    class(loaded_plate_t), intent(in) :: model
+  pure function new_run_record(plate) result(self)
+    type(composite_plate_t), intent(in) :: plate
     type(run_record_t) :: self
     integer :: zones
 
-    zones = size(model%mesh%zones)
+    zones = size(plate%mesh%zones)
     allocate (self%stage(zones), source=stage_intact)
     allocate (self%onset(3, zones), self%growth(3, zones), source=0.0_wp)
     allocate (self%warning_kinds(0), self%warning_zones(0), self%warning_times(0))
@@ -92,51 +93,51 @@ contains
   !> Stores the delaminated area before the run, and which interfaces had failed: their onset and first growth are not
   !> those of this run.
   !> Collective.
-  subroutine inherit(self, model, now)
+  subroutine inherit(self, plate, now)
     class(run_record_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The state inherited from another run
     type(state_t), intent(in) :: now
     real(wp) :: projected(area_rules)
 
-    self%stage = stages_of(model, now%interfaces)
+    self%stage = stages_of(plate, now%interfaces)
     where (self%stage >= stage_damaged) self%onset(1, :) = before_run
     where (self%stage >= stage_grown) self%growth(1, :) = before_run
     if (size(self%stage) == 0) return
-    projected = projected_areas_of(model, now%interfaces)
-    self%area_before = [sum(now%interfaces%cohesive%area(model)), projected(area_dissipated)]
+    projected = projected_areas_of(plate, now%interfaces)
+    self%area_before = [sum(now%interfaces%cohesive%area(plate)), projected(area_dissipated)]
   end subroutine inherit
 
   !> Updates the record with an accepted step. Collective.
-  subroutine observe(self, model, now, between_stages)
+  subroutine observe(self, plate, now, between_stages)
     class(run_record_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Steps between two checks of the interfaces
     integer, intent(in) :: between_stages
     integer :: stages(size(self%stage)), zone
 
-    if (now%force > self%peak_force) then
-      self%peak_force = now%force
+    if (now%impact%force > self%peak_force) then
+      self%peak_force = now%impact%force
       self%peak_time = now%time
     end if
-    call self%filter%advance(now%time - self%time, now%force)
+    call self%filter%advance(now%time - self%time, now%impact%force)
     if (self%filter%force > self%peak_filtered) then
       self%peak_filtered = self%filter%force
       self%peak_filtered_time = now%time
     end if
-    if (abs(now%deflection) > abs(self%deflection)) then
-      self%deflection = now%deflection
+    if (abs(now%impact%deflection) > abs(self%deflection)) then
+      self%deflection = now%impact%deflection
       self%deflection_time = now%time
     end if
-    call count_contacts(self, now%time, now%force)
+    call count_contacts(self, now%time, now%impact%force)
     ! Since then the impactor flies freely under gravity; a multistep integrator needs some steps for it.
-    if (self%contacts > 0 .and. .not. now%force > 0) self%rebound = &
-      model%setup%impactor%gravity*(now%time - self%contact_end) - now%impactor%velocity
+    if (self%contacts > 0 .and. .not. now%impact%force > 0) self%rebound = &
+      plate%setup%impactor%gravity*(now%time - self%contact_end) - now%impact%impactor%velocity
     self%time = now%time
-    self%force = now%force
+    self%force = now%impact%force
     if (all(self%stage == stage_grown) .or. modulo(now%step, between_stages) > 0) return
-    stages = stages_of(model, now%interfaces)
+    stages = stages_of(plate, now%interfaces)
     do zone = 1, size(stages)
       if (self%stage(zone) < stage_damaged .and. stages(zone) >= stage_damaged) self%onset(:, zone) = figures_at(now)
       if (self%stage(zone) < stage_grown .and. stages(zone) >= stage_grown) self%growth(:, zone) = figures_at(now)
@@ -148,22 +149,22 @@ contains
   !> Collective.
   subroutine observe_reactions(self, model, now)
     class(run_record_t), intent(inout) :: self
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
     real(wp), allocatable :: ends(:), strains(:)
     real(wp) :: bending
 
-    if (size(model%lines) == 0) return
+    if (size(model%loads%lines) == 0) return
     ends = end_values(model, line_values(model, now))
     if (size(ends) == 0) return
-    if (.not. allocated(self%before%plies)) self%before = damage_of(model, now, pressed_axis(model))
-    strains = gauge_strains(model, now%motion%displacement)
+    if (.not. allocated(self%before%plies)) self%before = damage_of(model%plate, now, pressed_axis(model))
+    strains = gauge_strains(model%plate, now%motion%displacement)
     bending = 0
-    if (all(back_to_back(model%setup%plate%gauges) > 0)) &
-      bending = percent_bending(strains(back_to_back(model%setup%plate%gauges)))
+    if (all(back_to_back(model%plate%setup%plate%gauges) > 0)) &
+      bending = percent_bending(strains(back_to_back(model%plate%setup%plate%gauges)))
     call self%compression%observe(now%time, ends(1), ends(2), ends(3), bending)
-    if (all(back_to_back(model%setup%plate%gauges) > 0)) &
-      call self%compression%observe_gauges(strains(back_to_back(model%setup%plate%gauges)))
+    if (all(back_to_back(model%plate%setup%plate%gauges) > 0)) &
+      call self%compression%observe_gauges(strains(back_to_back(model%plate%setup%plate%gauges)))
   end subroutine observe_reactions
 
   !> Time, contact force and deflection of a state.
@@ -172,7 +173,7 @@ contains
     !> The three values
     real(wp) :: figures_at(3)
 
-    figures_at = [shown_time(now%time), now%force, now%deflection]
+    figures_at = [shown_time(now%time), now%impact%force, now%impact%deflection]
   end function figures_at
 
   !> True once the impactor has left the plate, away from it.

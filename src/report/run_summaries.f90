@@ -6,7 +6,7 @@ module run_summaries
   use errors, only: error_t
   use kinds, only: wp
   use logger, only: log_t
-  use plate_loads, only: loaded_plate_t
+  use models, only: model_t
   use run_errors, only: run_errors_t, errors_by_coarse_run, errors_by_elastic_impact
   use run_figures, only: run_figures_t, ending_of, find_figures
   use run_provenance, only: provenance_t
@@ -35,7 +35,7 @@ contains
   !> requests one, or an accuracy without another error estimate; the run's factor has been released. Collective.
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
     type(deck_t), intent(in) :: deck
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     class(stepper_t), intent(in) :: stepper
     type(run_record_t), intent(in) :: record
     type(provenance_t), intent(in) :: provenance
@@ -60,8 +60,8 @@ contains
     if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record, stepper%now%has_failures())
     ended = .not. (allocated(error) .or. deck%setup%is_static() .or. deck%setup%initial%is_inherited)
     needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
-    if (needed) call run_coarse_model(deck, model%communicator, coarse_run)
-    if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impactor%velocity, &
+    if (needed) call run_coarse_model(deck, model%plate%communicator, coarse_run)
+    if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impact%impactor%velocity, &
                                                      sum(figures%interfaces%area), coarse_run)
     unknown_because = ''
     if (needed .and. .not. coarse_run%done) then
@@ -75,10 +75,10 @@ contains
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do
-    if (model%communicator%is_root()) &
+    if (model%plate%communicator%is_root()) &
       call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, given, &
                                                ending_of(error), provenance, seconds), fault)
-    call model%communicator%agree(fault)
+    call model%plate%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault
   end subroutine summarise
 end module run_summaries

@@ -10,6 +10,7 @@ module run_warnings
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use roundings, only: rounding
@@ -100,21 +101,21 @@ contains
     thickness = deck%expected%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
       call add('border', now%interfaces%border_reached(zone), zone)
-      call add('core', leaves_core(deck, model%setup%delaminations(zone)))
+      call add('core', leaves_core(deck, model%plate%setup%delaminations(zone)))
     end do
-    call add('indentation', now%indentation%alpha > max_indentation(deck))
-    if (now%force > 0) &
-      call add('below_nose', now%depth_below_impactor(model) > limit_of('below_nose')*thickness)
+    call add('indentation', now%impact%indentation%alpha > max_indentation(deck))
+    if (now%impact%force > 0) &
+      call add('below_nose', now%impact%depth_below_impactor(model) > limit_of('below_nose')*thickness)
     call add('steps', stepper%exceeds_tolerance())
     call add('mapping', record%mapping%raises_strain())
-    if (is_new(record, 'slopes')) call add('slopes', is_steep(model, now))
+    if (is_new(record, 'slopes')) call add('slopes', is_steep(model%plate, now))
     if (is_new(record, 'stringer') .and. have_strengths(deck)) &
-      call add('stringer', weakest_stringer(model, now%motion%displacement) > 0)
-    if (is_new(record, 'membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
-      call add('membrane', has_fibre_failure(deck, model, now))
+      call add('stringer', weakest_stringer(model%plate, now%motion%displacement) > 0)
+    if (is_new(record, 'membrane') .and. abs(now%impact%deflection) > limit_of('membrane')*thickness) &
+      call add('membrane', has_fibre_failure(deck, model%plate, now))
     ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
-    if (is_new(record, 'perforation') .and. deck%setup%ply_damage%is_present .and. now%force > 0 .and. &
-        now%impactor%velocity >= 0) call add('perforation', is_perforated(model, now))
+    if (is_new(record, 'perforation') .and. deck%setup%ply_damage%is_present .and. now%impact%force > 0 .and. &
+        now%impact%impactor%velocity >= 0) call add('perforation', is_perforated(model, now))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%setup%load_level(now%time), &
                                   deck%setup%is_static())
     call record%note_motion(deck, now)
@@ -208,11 +209,11 @@ contains
   end function leaves_core
 
   !> True: a rotation of the plate exceeds the limit of moderate rotations. Collective.
-  logical function is_steep(model, now)
-    type(model_t), intent(in) :: model
+  logical function is_steep(plate, now)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
 
-    is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > limit_of('slopes'))
+    is_steep = plate%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > limit_of('slopes'))
   end function is_steep
 
   !> True: the strength of a stringer is known.
@@ -232,23 +233,23 @@ contains
     real(wp), allocatable :: areas(:, :)
 
     is_perforated = .false.
-    counts = failed_counts(model, now%plies)
-    if (counts(fibre_failure) < model%plies) return
-    areas = failed_areas(model, now%plies)
+    counts = failed_counts(model%plate, now%plies)
+    if (counts(fibre_failure) < model%plate%layup%plies) return
+    areas = failed_areas(model%plate, now%plies)
     is_perforated = all(areas(fibre_failure, :) >= &
-      max(model%setup%mesh%patch**2, now%pressed_area(model))*(1 - rounding))
+      max(model%plate%setup%mesh%patch**2, now%impact%pressed_area(model))*(1 - rounding))
   end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.
-  logical function has_fibre_failure(deck, model, now)
+  logical function has_fibre_failure(deck, plate, now)
     type(deck_t), intent(in) :: deck
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
 
     has_fibre_failure = .false.
     if (.not. (deck%setup%ply_damage%is_present .and. any(deck%setup%plate%edges == edge_clamped))) return
-    counts = failed_counts(model, now%plies)
+    counts = failed_counts(plate, now%plies)
     has_fibre_failure = counts(fibre_failure) > 0
   end function has_fibre_failure
 

@@ -64,14 +64,14 @@ contains
     call results%add('contacts', record%contacts)
     call results%add('contact_duration', shown_time(record%contact_duration))
     call results%add('contact_until', shown_time(record%contact_end))
-    call results%add('in_contact', now%force > 0)
+    call results%add('in_contact', now%impact%force > 0)
     call results%add('dent_depth', figures%dent(1))
     call results%add('dent_indentation', figures%dent(2))
-    call results%add('impactor_displacement', now%impactor%displacement)
-    call results%add('impactor_velocity', now%impactor%velocity)
+    call results%add('impactor_displacement', now%impact%impactor%displacement)
+    call results%add('impactor_velocity', now%impact%impactor%velocity)
     call results%add('rebound_velocity', record%rebound, record%has_rebounded())
     call results%add('energy_impact', energy)
-    call results%add('energy_absorbed', energy - now%ledger%impactor, .not. now%force > 0)
+    call results%add('energy_absorbed', energy - now%ledger%impactor, .not. now%impact%force > 0)
     call results%add('energy_impactor', now%ledger%impactor)
   end subroutine add_impact
 

@@ -20,8 +20,8 @@ contains
 
   !> Reduces the strength of interfaces within the thickness of a block from matrix cracks of the ply above or below.
   !> Collective.
-  subroutine update_flaws(model, plies, displacement, interfaces)
-    class(composite_plate_t), intent(in) :: model
+  subroutine update_flaws(plate, plies, displacement, interfaces)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Displacement in the accepted state, ghosts up to date, (5, points)
@@ -29,34 +29,34 @@ contains
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
     real(wp), allocatable :: strains(:, :)
-    logical :: beside(size(model%mesh%zones)), cracked(product(model%mesh%cells))
+    logical :: beside(size(plate%mesh%zones)), cracked(product(plate%mesh%cells))
     integer :: zone, ply
 
-    if (.not. (model%map%layered .and. model%setup%ply_damage%is_present)) return
-    do ply = 1, model%mesh%plies
-      associate (below => model%mesh%zones%below_ply, delaminations => model%setup%delaminations)
+    if (.not. (plate%map%layered .and. plate%setup%ply_damage%is_present)) return
+    do ply = 1, plate%mesh%plies
+      associate (below => plate%mesh%zones%below_ply, delaminations => plate%setup%delaminations)
         beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &
                  delaminations%flaw_strength < 1
         if (.not. any(beside)) cycle
-        cracked = cracked_cells(model, plies, ply)
+        cracked = cracked_cells(plate, plies, ply)
         do zone = 1, size(beside)
-          if (beside(zone)) call weaken_beside(interfaces%cohesive, model, zone, cracked, &
-                                               block_thickness(model%laminates(1)%plies, ply), &
+          if (beside(zone)) call weaken_beside(interfaces%cohesive, plate, zone, cracked, &
+                                               block_thickness(plate%layup%laminates(1)%plies, ply), &
                                                delaminations(zone)%flaw_strength)
         end do
       end associate
     end do
-    if (.not. any(model%setup%delaminations%shear_cracks)) return
-    strains = element_strains(model, plies, displacement)
-    do ply = 1, model%mesh%plies
-      call weaken_by_shear(model, plies, strains, ply, interfaces)
+    if (.not. any(plate%setup%delaminations%shear_cracks)) return
+    strains = element_strains(plate, plies, displacement)
+    do ply = 1, plate%mesh%plies
+      call weaken_by_shear(plate, plies, strains, ply, interfaces)
     end do
   end subroutine update_flaws
 
   !> Reduces the strengths of the interfaces of a ply beside its cracks by transverse shear: a cracked ply transmits no
   !> more than its own shear strength. Collective.
-  subroutine weaken_by_shear(model, plies, strains, ply, interfaces)
-    class(composite_plate_t), intent(in) :: model
+  subroutine weaken_by_shear(plate, plies, strains, ply, interfaces)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
@@ -66,13 +66,13 @@ contains
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
     type(matrix_strengths_t) :: strengths
-    real(wp) :: parts(size(model%mesh%zones)), reach
-    logical :: beside(size(parts)), cracked(product(model%mesh%cells))
+    real(wp) :: parts(size(plate%mesh%zones)), reach
+    logical :: beside(size(parts)), cracked(product(plate%mesh%cells))
     integer :: zone
 
-    reach = block_thickness(model%laminates(1)%plies, ply)
-    associate (setup => model%setup, below => model%mesh%zones%below_ply)
-      strengths = crack_strengths(model%laminates(1)%plies, ply, setup%materials, setup%ply_damage)
+    reach = block_thickness(plate%layup%laminates(1)%plies, ply)
+    associate (setup => plate%setup, below => plate%mesh%zones%below_ply)
+      strengths = crack_strengths(plate%layup%laminates(1)%plies, ply, setup%materials, setup%ply_damage)
       beside = (below == ply .or. below == ply - 1) .and. setup%delaminations%law == law_cohesive .and. &
                setup%delaminations%shear_cracks
       parts = 1
@@ -82,18 +82,18 @@ contains
     if (.not. any(beside)) return
     cracked = .false.
     do zone = 1, size(beside)
-      if (beside(zone)) cracked = cracked .or. reachable_cells(model%mesh, zone, reach)
+      if (beside(zone)) cracked = cracked .or. reachable_cells(plate%mesh, zone, reach)
     end do
-    cracked = sheared_cells(model, plies, strains, ply, cracked, strengths)
+    cracked = sheared_cells(plate, plies, strains, ply, cracked, strengths)
     do zone = 1, size(beside)
-      if (beside(zone)) call weaken_beside(interfaces%cohesive, model, zone, cracked, reach, parts(zone))
+      if (beside(zone)) call weaken_beside(interfaces%cohesive, plate, zone, cracked, reach, parts(zone))
     end do
   end subroutine weaken_by_shear
 
   !> Cells in which a ply has started to crack or reaches its strength with transverse shear included, on all ranks.
   !> Collective.
-  function sheared_cells(model, plies, strains, ply, reachable, strengths) result(cracked)
-    class(composite_plate_t), intent(in) :: model
+  function sheared_cells(plate, plies, strains, ply, reachable, strengths) result(cracked)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
@@ -111,22 +111,22 @@ contains
     integer :: i
 
     do i = 1, size(cracks)
-      cracks(i) = reachable(model%mesh%element_cell(model%distribution%elements(i)))
-      if (cracks(i)) cracks(i) = has_ply(model, ply, i)
+      cracks(i) = reachable(plate%mesh%element_cell(plate%distribution%elements(i)))
+      if (cracks(i)) cracks(i) = has_ply(plate, ply, i)
       if (.not. cracks(i)) cycle
-      left = plies%elasticity(model, ply, i)
-      associate (stack => model%stacks(model%stack(i)))
+      left = plies%elasticity(plate, ply, i)
+      associate (stack => plate%layup%stacks(plate%layup%stack(i)))
         cracks(i) = left%e2 < stack%plies(stack%place(ply))%elasticity%e2
       end associate
       if (.not. cracks(i)) &
-        cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(model, plies, left, strains, ply, i))
+        cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(plate, plies, left, strains, ply, i))
     end do
-    cracked = cells_of(model, cracks)
+    cracked = cells_of(plate, cracks)
   end function sheared_cells
 
   !> Cells with matrix cracks in a ply, on all ranks. Collective.
-  function cracked_cells(model, plies, ply) result(cracked)
-    class(composite_plate_t), intent(in) :: model
+  function cracked_cells(plate, plies, ply) result(cracked)
+    type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Ply of the laminate
@@ -135,13 +135,13 @@ contains
     logical, allocatable :: cracked(:)
     logical, allocatable :: failed(:, :)
 
-    failed = plies%failed_in_elements(model, ply)
-    cracked = cells_of(model, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
+    failed = plies%failed_in_elements(plate, ply)
+    cracked = cells_of(plate, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
   end function cracked_cells
 
   !> Cells of elements, on all ranks. Collective.
-  function cells_of(model, elements) result(cells)
-    class(composite_plate_t), intent(in) :: model
+  function cells_of(plate, elements) result(cells)
+    type(composite_plate_t), intent(in) :: plate
     !> True for elements of this rank, (elements)
     logical, intent(in) :: elements(:)
     !> (cells of the mesh)
@@ -149,11 +149,11 @@ contains
     real(wp), allocatable :: found(:)
     integer :: i
 
-    allocate (found(product(model%mesh%cells)), source=0.0_wp)
+    allocate (found(product(plate%mesh%cells)), source=0.0_wp)
     do i = 1, size(elements)
-      if (elements(i)) found(model%mesh%element_cell(model%distribution%elements(i))) = 1
+      if (elements(i)) found(plate%mesh%element_cell(plate%distribution%elements(i))) = 1
     end do
-    call model%communicator%maximum(found)
+    call plate%communicator%maximum(found)
     cells = found > 0
   end function cells_of
 end module crack_flaws

@@ -25,8 +25,8 @@ contains
 
   !> Depth of the struck face below the plane of the surface around it; 0 without a nose, or without cells of the mesh
   !> there. The permanent indentation of the law is added separately. Collective.
-  real(wp) function dent_depth(model, displacement) result(depth)
-    class(composite_plate_t), intent(in) :: model
+  real(wp) function dent_depth(plate, displacement) result(depth)
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: plane(3), place(2)
@@ -34,25 +34,25 @@ contains
     integer :: i, point
 
     depth = 0
-    if (.not. (model%setup%impactor%is_present .and. model%setup%impactor%radius > 0)) return
-    call find_plane(model, displacement, plane, is_known)
+    if (.not. (plate%setup%impactor%is_present .and. plate%setup%impactor%radius > 0)) return
+    call find_plane(plate, displacement, plane, is_known)
     if (.not. is_known) return
-    associate (mesh => model%mesh, owned => model%distribution%points(:model%distribution%owned))
+    associate (mesh => plate%mesh, owned => plate%distribution%points(:plate%distribution%owned))
       do i = 1, size(owned)
         point = owned(i)
         if (mesh%first_point(mesh%point_node(point)) /= point) cycle
         place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
-        if (norm2(place) >= nearest*model%setup%impactor%radius) cycle
+        if (norm2(place) >= nearest*plate%setup%impactor%radius) cycle
         depth = max(depth, displacement(3, i) - plane(1) - dot_product(plane(2:3), place))
       end do
     end associate
-    call model%communicator%maximum(depth)
+    call plate%communicator%maximum(depth)
   end function dent_depth
 
   !> Least-squares plane of the surface around the dent, through the centres of cells weighted by area. Slopes are zero
   !> along directions of symmetry. Collective.
-  subroutine find_plane(model, displacement, plane, is_known)
-    class(composite_plate_t), intent(in) :: model
+  subroutine find_plane(plate, displacement, plane, is_known)
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Height at the struck point and slopes along x and y
@@ -64,22 +64,22 @@ contains
     integer :: element, point, i
     logical :: is_free(2)
 
-    associate (mesh => model%mesh)
-      do element = 1, size(model%distribution%elements)
-        associate (global => model%distribution%elements(element))
+    associate (mesh => plate%mesh)
+      do element = 1, size(plate%distribution%elements)
+        associate (global => plate%distribution%elements(element))
           if (.not. mesh%is_top(global)) cycle
           point = mesh%connectivity(5, global)
           place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
-          if (norm2(place) < nearest*model%setup%impactor%radius .or. &
-              norm2(place) > farthest*model%setup%impactor%radius) cycle
+          if (norm2(place) < nearest*plate%setup%impactor%radius .or. &
+              norm2(place) > farthest*plate%setup%impactor%radius) cycle
           area = mesh%cell_area(mesh%place_of(mesh%element_cell(global)))
         end associate
-        terms = area*terms_of(place(1), place(2), displacement(3, model%distribution%local(point)))
+        terms = area*terms_of(place(1), place(2), displacement(3, plate%distribution%local(point)))
         do i = 1, size(sums)
           call sums(i)%add(terms(i))
         end do
       end do
-      totals = totals_of(model%communicator, sums)
+      totals = totals_of(plate%communicator, sums)
       is_known = totals(1) > 0
       plane = 0
       if (.not. is_known) return

@@ -6,7 +6,7 @@ module inherited_states
   use cohesive_sliding, only: visit_friction
   use field_mappings, only: motion_field
   use interface_flaws, only: visit_flaws
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use states, only: state_t
   implicit none
   private
@@ -15,24 +15,20 @@ module inherited_states
 contains
 
   !> Saves or loads the inherited state, by its names in a checkpoint.
-  subroutine visit_inheritance(state, archive, model)
+  subroutine visit_inheritance(state, archive, plate)
     type(state_t), intent(inout) :: state
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
-    integer :: points
+    type(composite_plate_t), intent(in) :: plate
 
-    points = model%mesh%points()
-    associate (owned => model%distribution%points(:model%distribution%owned), motion => state%motion)
-      call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
-      call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
-      if (archive%loading) call model%halo%update(motion%displacement)
-      if (archive%loading) call model%halo%update(motion%velocity)
-    end associate
-    call state%plies%visit(archive, model)
-    call state%interfaces%cohesive%visit(archive, model)
-    call visit_friction(state%interfaces%cohesive, archive, model)
-    call visit_flaws(state%interfaces%cohesive, archive, model)
-    call state%indentation%visit(archive)
+    call plate%visit_points(archive, 'motion/displacement', state%motion%displacement, motion_field)
+    call plate%visit_points(archive, 'motion/velocity', state%motion%velocity, motion_field)
+    if (archive%loading) call plate%halo%update(state%motion%displacement)
+    if (archive%loading) call plate%halo%update(state%motion%velocity)
+    call state%plies%visit(archive, plate)
+    call state%interfaces%cohesive%visit(archive, plate)
+    call visit_friction(state%interfaces%cohesive, archive, plate)
+    call visit_flaws(state%interfaces%cohesive, archive, plate)
+    call state%impact%indentation%visit(archive)
     call archive%item('ledger/ply_damage', state%ledger%ply_damage)
   end subroutine visit_inheritance
 end module inherited_states

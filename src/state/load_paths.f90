@@ -4,7 +4,7 @@ module load_paths
   use field_mappings, only: motion_field
   use kinds, only: wp
   use archives, only: archive_t
-  use discretizations, only: discretization_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: load_path_t
@@ -26,20 +26,17 @@ module load_paths
 contains
 
   !> Saves or loads.
-  subroutine visit(self, archive, model)
+  subroutine visit(self, archive, plate)
     class(load_path_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    class(discretization_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
     call archive%item('path/by_dissipation', self%by_dissipation)
     call archive%item('path/factor_change', self%factor_change)
     call archive%item('path/dissipated', self%dissipated)
     call archive%item('path/force_change', self%force_change)
     if (.not. allocated(self%change)) return
-    associate (partition => model%distribution)
-      call archive%field('path/change', partition%points(:partition%owned), model%mesh%points(), self%change, &
-                         motion_field)
-    end associate
-    if (archive%loading) call model%halo%update(self%change)
+    call plate%visit_points(archive, 'path/change', self%change, motion_field)
+    if (archive%loading) call plate%halo%update(self%change)
   end subroutine visit
 end module load_paths

@@ -1,17 +1,17 @@
 !> State of a run. A step is computed in a second state of this type, which replaces the first if it is accepted: a
 !> rejected step has no effect.
 module states
-  use field_mappings, only: area_field, motion_field
+  use field_mappings, only: motion_field
   use kinds, only: wp
   use archives, only: archive_t
   use contact_loading, only: loading_indentation
-  use contact_patches, only: contact_patch_t
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
-  use impactors, only: impactor_t, new_impactor, impactor_energy
-  use tan_sun_indentation, only: indentation_t
+  use impactors, only: new_impactor, impactor_energy
+  use impact_states, only: impact_state_t
   use energy_ledgers, only: ledger_t
   use load_paths, only: load_path_t
   use motions, only: motion_t
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use interface_states, only: interface_state_t, new_interface_state
@@ -22,9 +22,14 @@ module states
   !> Name of the time in checkpoints.
   character(len=*), parameter, public :: time_item = 'time'
 
-  !> State without the large arrays of the plate's motion and plies. It has many components because a rejected step must
-  !> change none of them.
-  type :: small_state_t
+  !> Iterations of equilibrium, of the contact force and of the contact pressures.
+  type :: iteration_counts_t
+    !> Iterations of each
+    integer :: equilibrium = 0, force = 0, contact = 0
+  end type iteration_counts_t
+
+  !> The state of plate, impactor and contact at one time.
+  type :: state_t
     !> Time, or load factor of a static analysis
     real(wp) :: time = 0
     !> Accepted steps
@@ -33,46 +38,28 @@ module states
     real(wp) :: load_factor = 0
     !> Last step on the path of a static analysis
     type(load_path_t) :: path
-    !> The impactor
-    type(impactor_t) :: impactor
-    !> History variables of the indentation
-    type(indentation_t) :: indentation
+    !> Motion of the plate
+    type(motion_t) :: motion
+    !> The impactor, its contact and the response at the struck point
+    type(impact_state_t) :: impact
+    !> Failures of the plies and the reduced stiffness
+    type(ply_failure_t) :: plies
     !> The interfaces
     type(interface_state_t) :: interfaces
-    !> Impact force at this time
-    real(wp) :: force = 0
-    !> Patch under the impactor
-    type(contact_patch_t) :: contact
     !> Reactions of prescribed lines of the full plate in explicit steps, (lines)
     real(wp), allocatable :: line_reactions(:)
-    !> Mean deflection of the patch, and deflection of the struck point
-    real(wp) :: patch_mean = 0, deflection = 0
-    !> Bending stress at the struck point, and its largest value so far
-    real(wp) :: stress = 0, largest_stress = 0
     !> The energy ledger
     type(ledger_t) :: ledger
-    !> Iterations of equilibrium, of the force and of the contact pressures in the last step
-    integer :: iterations = 0, force_iterations = 0, contact_iterations = 0
-    !> Their sums over all steps
-    integer :: all_iterations = 0, all_force_iterations = 0, all_contact_iterations = 0
+    !> Iterations of the last step, and their sums over all steps
+    type(iteration_counts_t) :: iterations, all_iterations
     !> True: plies and interfaces keep their damage, as a state mapped to this mesh comes to equilibrium
     logical :: holds_damage = .false.
     !> Largest forces so far, the reference of the residual when forces are small: translations, rotations
     real(wp) :: largest_forces(2) = 0
-  end type small_state_t
-
-  !> The state of plate, impactor and contact at one time. It has many components because a step changes all of them.
-  type, extends(small_state_t) :: state_t
-    !> Motion of the plate
-    type(motion_t) :: motion
-    !> Failures of the plies and the reduced stiffness
-    type(ply_failure_t) :: plies
   contains
     procedure :: start_from
     procedure :: find_internal
     procedure :: contact_deflection
-    procedure :: pressed_area
-    procedure :: depth_below_impactor
     procedure :: has_failures
     procedure :: hold_damage
     procedure :: count_step
@@ -89,21 +76,21 @@ contains
     real(wp) :: energy
     integer :: points
 
-    points = size(model%distribution%points)
+    points = size(model%plate%distribution%points)
     allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
               self%motion%inertia(5, points), self%motion%momentum(5, points), source=0.0_wp)
-    self%plies = new_ply_failure(model)
+    self%plies = new_ply_failure(model%plate)
     self%interfaces = new_interface_state(model)
     ! Clamps with a force are in equilibrium with the frame from the start.
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
-    self%contact = model%patch
-    if (.not. model%setup%moves_impactor()) return
-    self%impactor = new_impactor(model%setup%impactor)
-    self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
+    self%impact%patch = model%patch
+    if (.not. model%plate%setup%moves_impactor()) return
+    self%impact%impactor = new_impactor(model%plate%setup%impactor)
+    self%ledger%impactor = impactor_energy(model%plate%setup%impactor, self%impact%impactor)
     self%ledger%initial = self%ledger%impactor
-    self%ledger%largest = energy_of_weight(model%setup%impactor, model%setup%impactor%indentation)
+    self%ledger%largest = energy_of_weight(model%plate%setup%impactor, model%plate%setup%impactor%indentation)
   end function new_state
 
   !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
@@ -120,19 +107,26 @@ contains
 
   !> Copies the state from which a step starts; of the motion only the displacement, as velocity, acceleration and
   !> forces are computed by the step.
-  pure subroutine start_from(self, model, old)
+  pure subroutine start_from(self, plate, old)
     class(state_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The state copied
     type(state_t), intent(in) :: old
 
-    self%small_state_t = old%small_state_t
-    self%iterations = 0
-    self%force_iterations = 0
-    self%contact_iterations = 0
+    self%time = old%time
+    self%step = old%step
+    self%load_factor = old%load_factor
+    self%path = old%path
     self%motion%displacement = old%motion%displacement
-    ! They change only by damage.
-    if (model%setup%ply_damage%is_present) self%plies = old%plies
+    self%impact = old%impact
+    ! Plies change only by damage.
+    if (plate%setup%ply_damage%is_present) self%plies = old%plies
+    self%interfaces = old%interfaces
+    self%ledger = old%ledger
+    self%iterations = iteration_counts_t()
+    self%all_iterations = old%all_iterations
+    self%holds_damage = old%holds_damage
+    self%largest_forces = old%largest_forces
   end subroutine start_from
 
   !> Internal forces of layers and cohesive interfaces, and their stored energy on this rank.
@@ -147,44 +141,22 @@ contains
 
     call self%plies%note_step(self%time - old%time)
     call self%plies%find_forces(model, self%motion%displacement, self%motion%internal, energy)
-    call model%profile%enter('interface law')
-    call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &
+    call model%plate%profile%enter('interface law')
+    call self%interfaces%cohesive%add_forces(model%plate, old%interfaces%cohesive, self%motion%displacement, &
                                              self%motion%internal, energy)
-    call model%profile%leave()
-    call model%profile%enter('contact and ties')
+    call model%plate%profile%leave()
+    call model%plate%profile%enter('contact and ties')
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
-    call model%profile%leave()
+    call model%plate%profile%leave()
   end subroutine find_internal
 
   !> Deflection of the plate under the impactor, the same on every rank.
-  real(wp) function contact_deflection(self, model)
+  real(wp) function contact_deflection(self, plate)
     class(state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
-    contact_deflection = self%contact%deflection(model%communicator, self%motion%displacement)
+    contact_deflection = self%impact%patch%deflection(plate%communicator, self%motion%displacement)
   end function contact_deflection
-
-  !> Contact area on the full plate, the same on every rank.
-  pure real(wp) function pressed_area(self, model) result(area)
-    class(state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-
-    area = model%setup%mesh%patch**2
-    if (allocated(model%nose)) area = self%contact%area
-  end function pressed_area
-
-  !> Depth of the struck point below the impactor, both from their position at first contact.
-  pure real(wp) function depth_below_impactor(self, model) result(depth)
-    class(state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-
-    depth = self%deflection - self%impactor%displacement
-    if (allocated(model%nose)) then
-      depth = depth - self%contact%touched_at
-    else
-      depth = depth + self%contact%offset
-    end if
-  end function depth_below_impactor
 
   !> True once plies have failed or delaminations have grown.
   pure logical function has_failures(self)
@@ -212,9 +184,11 @@ contains
     type(state_t), intent(in) :: old
 
     self%step = old%step + 1
-    self%all_iterations = old%all_iterations + self%iterations
-    self%all_force_iterations = old%all_force_iterations + self%force_iterations
-    self%all_contact_iterations = old%all_contact_iterations + self%contact_iterations
+    associate (all => self%all_iterations, before => old%all_iterations, now => self%iterations)
+      all%equilibrium = before%equilibrium + now%equilibrium
+      all%force = before%force + now%force
+      all%contact = before%contact + now%contact
+    end associate
   end subroutine count_step
 
   !> Stores the changes of a load step, and chooses the control of the next one: load or dissipated energy, whichever
@@ -229,7 +203,7 @@ contains
 
     self%path%change = self%motion%displacement - old%motion%displacement
     self%path%factor_change = self%load_factor - old%load_factor
-    self%path%force_change = self%force - old%force
+    self%path%force_change = self%impact%force - old%impact%force
     self%path%dissipated = self%ledger%delamination - old%ledger%delamination
     self%path%by_dissipation = self%path%dissipated > dissipation*self%path%factor_change
     if (self%ledger%delamination >= dissipation) self%time = 1
@@ -244,69 +218,39 @@ contains
     call archive%item(time_item, self%time)
     call archive%item('step', self%step)
     call archive%item('load_factor', self%load_factor)
-    call self%path%visit(archive, model)
-    call visit_motion(self%motion, archive, model)
-    call self%impactor%visit(archive)
-    call self%indentation%visit(archive)
-    call archive%item('force', self%force)
-    call archive%item('patch_mean', self%patch_mean)
-    call visit_patch(self, archive, model)
-    call archive%item('deflection', self%deflection)
-    call archive%item('stress', self%stress)
-    call archive%item('largest_stress', self%largest_stress)
-    call self%plies%visit(archive, model)
+    call self%path%visit(archive, model%plate)
+    call visit_motion(self%motion, archive, model%plate)
+    call self%impact%visit(archive, model)
+    call self%plies%visit(archive, model%plate)
     call self%interfaces%visit(archive, model)
     call self%ledger%visit(archive)
     call archive%item('holds_damage', self%holds_damage)
     if (archive%loading) call self%hold_damage(self%holds_damage)
-    call archive%item('iterations', self%iterations)
-    call archive%item('force_iterations', self%force_iterations)
-    call archive%item('contact_iterations', self%contact_iterations)
-    call archive%item('all_contact_iterations', self%all_contact_iterations)
-    call archive%item('all_iterations', self%all_iterations)
-    call archive%item('all_force_iterations', self%all_force_iterations)
+    call archive%item('iterations', self%iterations%equilibrium)
+    call archive%item('force_iterations', self%iterations%force)
+    call archive%item('contact_iterations', self%iterations%contact)
+    call archive%item('all_contact_iterations', self%all_iterations%contact)
+    call archive%item('all_iterations', self%all_iterations%equilibrium)
+    call archive%item('all_force_iterations', self%all_iterations%force)
     call archive%item('largest_forces/translation', self%largest_forces(1))
     call archive%item('largest_forces/rotation', self%largest_forces(2))
   end subroutine visit
 
-  !> Saves or loads the distribution of the impactor's force.
-  subroutine visit_patch(self, archive, model)
-    type(state_t), intent(inout) :: self
-    class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
-    real(wp), allocatable :: weights(:, :)
-
-    call archive%item('contact/offset', self%contact%offset)
-    if (.not. allocated(model%nose)) return
-    call archive%item('contact/touched_at', self%contact%touched_at)
-    call archive%item('contact/area', self%contact%area)
-    weights = reshape(self%contact%weights, [1, size(self%contact%weights)])
-    associate (partition => model%distribution)
-      call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights, &
-                         area_field)
-    end associate
-    call self%contact%spread(weights(1, :), (self%contact%offset))
-  end subroutine visit_patch
-
   !> Saves or loads the motion of the plate.
-  subroutine visit_motion(motion, archive, model)
+  subroutine visit_motion(motion, archive, plate)
     type(motion_t), intent(inout) :: motion
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
-    integer :: points
+    type(composite_plate_t), intent(in) :: plate
 
-    points = model%mesh%points()
-    associate (owned => model%distribution%points(:model%distribution%owned))
-      call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
-      call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
-      call archive%field('motion/acceleration', owned, points, motion%acceleration, motion_field)
-      call archive%field('motion/internal', owned, points, motion%internal, motion_field)
-      call archive%field('motion/inertia', owned, points, motion%inertia, motion_field)
-      call archive%field('motion/momentum', owned, points, motion%momentum, motion_field)
-    end associate
+    call plate%visit_points(archive, 'motion/displacement', motion%displacement, motion_field)
+    call plate%visit_points(archive, 'motion/velocity', motion%velocity, motion_field)
+    call plate%visit_points(archive, 'motion/acceleration', motion%acceleration, motion_field)
+    call plate%visit_points(archive, 'motion/internal', motion%internal, motion_field)
+    call plate%visit_points(archive, 'motion/inertia', motion%inertia, motion_field)
+    call plate%visit_points(archive, 'motion/momentum', motion%momentum, motion_field)
     if (.not. archive%loading) return
-    call model%halo%update(motion%displacement)
-    call model%halo%update(motion%velocity)
-    call model%halo%update(motion%acceleration)
+    call plate%halo%update(motion%displacement)
+    call plate%halo%update(motion%velocity)
+    call plate%halo%update(motion%acceleration)
   end subroutine visit_motion
 end module states

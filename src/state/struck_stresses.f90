@@ -16,8 +16,8 @@ module struck_stresses
 contains
 
   !> Magnitude of the surface stress 6 M / h**2 around the struck point, the same on every rank.
-  real(wp) function struck_stress(model, displacement) result(stress)
-    class(composite_plate_t), intent(in) :: model
+  real(wp) function struck_stress(plate, displacement) result(stress)
+    type(composite_plate_t), intent(in) :: plate
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
@@ -27,20 +27,20 @@ contains
     real(wp), allocatable :: motion(:, :)
     integer :: i, k
 
-    if (size(model%struck_elements) > 0) motion = model%motion_of(displacement)
-    do i = 1, size(model%struck_elements)
-      associate (element => model%struck_elements(i))
-        call mean_strains(model%elements, batch_of(element), model%setup%mesh%kinematics, motion, strains)
+    if (size(plate%struck%elements) > 0) motion = plate%motion_of(displacement)
+    do i = 1, size(plate%struck%elements)
+      associate (element => plate%struck%elements(i))
+        call mean_strains(plate%elements, batch_of(element), plate%setup%mesh%kinematics, motion, strains)
         do k = 1, 3
           call sums(k)%add(strains(lane_of(element), 3 + k))
         end do
       end associate
     end do
-    curvature = totals_of(model%communicator, sums)/model%struck_count
+    curvature = totals_of(plate%communicator, sums)/plate%struck%count
     ! The twist of a plate with mirror symmetry vanishes at the struck point, but not in the mean over the elements of
     ! the modelled part.
-    if (any(model%mesh%mirrored)) curvature(3) = 0
-    call find_section(model, section, thickness)
+    if (any(plate%mesh%mirrored)) curvature(3) = 0
+    call find_section(plate, section, thickness)
     associate (d => section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
                 d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &
@@ -50,18 +50,18 @@ contains
   end function struck_stress
 
   !> Section and thickness of the plate there, with doublers and ply drops about its own mid-plane.
-  pure subroutine find_section(model, section, thickness)
-    class(composite_plate_t), intent(in) :: model
+  pure subroutine find_section(plate, section, thickness)
+    type(composite_plate_t), intent(in) :: plate
     type(section_t), intent(out) :: section
     !> Of all plies there
     real(wp), intent(out) :: thickness
     type(laminate_t) :: local
 
-    section = model%bending_section
-    thickness = model%thickness
-    if (model%setup%zones%is_empty()) return
-    local = model%setup%struck_laminate()
-    section = section_of(in_bending(stacked_plies(local, model%setup%materials)), local%shear_correction)
+    section = plate%layup%bending_section
+    thickness = plate%layup%thickness
+    if (plate%setup%zones%is_empty()) return
+    local = plate%setup%struck_laminate()
+    section = section_of(in_bending(stacked_plies(local, plate%setup%materials)), local%shear_correction)
     thickness = sum(local%thickness)
   end subroutine find_section
 end module struck_stresses

@@ -8,7 +8,7 @@
 module dissipation_steps
   use kinds, only: wp
   use errors, only: error_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use newton_iterations, only: newton_iteration_t
   use static_steps, only: static_step_t, new_static_step
   use krylov_corrections, only: solve_load_tangent
@@ -34,8 +34,8 @@ module dissipation_steps
 contains
 
   !> Step to a time, with the energy to be dissipated.
-  pure function new_dissipation_step(model, time, target_dissipation, max_load_change) result(self)
-    type(model_t), intent(in) :: model
+  pure function new_dissipation_step(plate, time, target_dissipation, max_load_change) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> Time at its end
     real(wp), intent(in) :: time
     !> Energy to dissipate, of the full plate
@@ -44,7 +44,7 @@ contains
     real(wp), intent(in) :: max_load_change
     type(dissipation_step_t) :: self
 
-    self%static_step_t = new_static_step(model, time, 0.0_wp)
+    self%static_step_t = new_static_step(plate, time, 0.0_wp)
     self%may_be_shortened = .true.
     self%target_dissipation = target_dissipation
     self%max_load_change = max_load_change
@@ -62,7 +62,7 @@ contains
       self%load_factor = old%load_factor + part*old%path%factor_change
       call self%static_step_t%begin(at)
       new%motion%displacement = old%motion%displacement + part*old%path%change
-      new%force = old%force + part*old%path%force_change
+      new%impact%force = old%impact%force + part*old%path%force_change
     end associate
   end subroutine begin
 
@@ -74,7 +74,7 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new)
       call self%static_step_t%find_residual(at)
-      new%path%dissipated = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+      new%path%dissipated = new%interfaces%cohesive%dissipation(model%plate, old%interfaces%cohesive)
     end associate
   end subroutine find_residual
 
@@ -85,13 +85,13 @@ contains
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, new => at%new)
-      if (model%setup%impactor%is_present) then
+      if (model%plate%setup%impactor%is_present) then
         ! The impactor's travel follows from its force.
-        if (new%force < 0) then
+        if (new%impact%force < 0) then
           residual_norm = huge(residual_norm)
           return
         end if
-        new%load_factor = travel_for(model, new)/model%setup%impactor%travel
+        new%load_factor = travel_for(model%plate, new)/model%plate%setup%impactor%travel
       end if
       residual_norm = self%static_step_t%residual_norm(at)
       residual_norm = max(residual_norm, &
@@ -116,30 +116,30 @@ contains
       response = 0
       slopes = 0
       loads = 0
-      if (model%setup%impactor%is_present) then
-        call add_impactor_force(model, new, 1.0_wp, loads)
+      if (model%plate%setup%impactor%is_present) then
+        call add_impactor_force(model%plate, new, 1.0_wp, loads)
       else
-        call model%load_slopes(loads)
+        call model%loads%load_slopes(loads)
       end if
       call solve_load_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
       if (allocated(error)) return
-      call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, &
-                                                          slopes)
-      sums = [model%product(slopes, correction), model%product(slopes, response)]
-      call model%communicator%sum(sums)
-      sums = sums*model%mesh%multiplicity
+      call new%interfaces%cohesive%add_dissipation_slopes(model%plate, old%interfaces%cohesive, &
+                                                          new%motion%displacement, slopes)
+      sums = [model%plate%product(slopes, correction), model%plate%product(slopes, response)]
+      call model%plate%communicator%sum(sums)
+      sums = sums*model%plate%mesh%multiplicity
       change = 0
       if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
-      if (model%setup%impactor%is_present) then
-        new%force = new%force + self%correction_factor(new%iterations)*change
+      if (model%plate%setup%impactor%is_present) then
+        new%impact%force = new%impact%force + self%correction_factor(new%iterations%equilibrium)*change
       else
         ! Near a limit point a correction may be so large that the iteration diverges.
-        factor = new%load_factor + self%correction_factor(new%iterations)*change
+        factor = new%load_factor + self%correction_factor(new%iterations%equilibrium)*change
         factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
-        change = (factor - new%load_factor)/self%correction_factor(new%iterations)
+        change = (factor - new%load_factor)/self%correction_factor(new%iterations%equilibrium)
         new%load_factor = factor
       end if
-      correction = self%correction_factor(new%iterations)*(correction + change*response)
+      correction = self%correction_factor(new%iterations%equilibrium)*(correction + change*response)
     end associate
   end subroutine complete_correction
 end module dissipation_steps

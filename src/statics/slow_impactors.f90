@@ -5,6 +5,7 @@ module slow_impactors
   use errors, only: error_t
   use impact_force, only: contact_step_t, solve_impact_force
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of, indentation_stiffness
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use krylov_corrections, only: solve_load_tangent
   use states, only: state_t
@@ -16,8 +17,8 @@ module slow_impactors
 contains
 
   !> Adds the impactor's force to loads.
-  pure subroutine add_impactor_force(model, state, force, loads)
-    type(model_t), intent(in) :: model
+  pure subroutine add_impactor_force(plate, state, force, loads)
+    type(composite_plate_t), intent(in) :: plate
     !> The state, with its patch
     type(state_t), intent(in) :: state
     !> The force of the impactor on the full plate
@@ -25,7 +26,8 @@ contains
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
 
-    if (model%setup%impactor%is_present) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*state%contact%weights
+    if (plate%setup%impactor%is_present) loads(3, :) = loads(3, :) + force/plate%mesh%multiplicity &
+                                                       *state%impact%patch%weights
   end subroutine add_impactor_force
 
   !> Finds the impactor's force for the travel and the deflection of the plate, and adds the unit-load solution times
@@ -50,35 +52,36 @@ contains
     allocate (push, response, mold=correction)
     push = 0
     response = 0
-    call add_impactor_force(model, new, 1.0_wp, push)
+    call add_impactor_force(model%plate, new, 1.0_wp, push)
     call solve_load_tangent(operator, model, new%interfaces%cohesive, push, response, error)
     if (allocated(error)) return
-    compliance = new%contact%mean(model%communicator, response)
-    mean = new%contact_deflection(model) + new%contact%mean(model%communicator, correction)
-    if (compliance < 0 .and. allocated(model%elements%initial_slopes)) then
-      force = force_beyond_limit(model, new, mean, compliance)
+    compliance = new%impact%patch%mean(model%plate%communicator, response)
+    mean = new%contact_deflection(model%plate) + new%impact%patch%mean(model%plate%communicator, correction)
+    if (compliance < 0 .and. allocated(model%plate%elements%initial_slopes)) then
+      force = force_beyond_limit(model%plate, new, mean, compliance)
       if (force >= 0) then
-        correction = correction + (force - new%force)*response
-        new%force = new%force + part*(force - new%force)
+        correction = correction + (force - new%impact%force)*response
+        new%impact%force = new%impact%force + part*(force - new%impact%force)
         return
       end if
     end if
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
-    step = contact_step_t(model%setup%impactor%indentation, new%indentation, start=new%indentation%alpha, &
-                          free=new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, &
+    step = contact_step_t(model%plate%setup%impactor%indentation, new%impact%indentation, &
+                          start=new%impact%indentation%alpha, &
+                          free=new%load_factor*model%plate%setup%impactor%travel - mean + new%impact%force*compliance, &
                           compliance=compliance, is_mean=.false.)
     call solve_impact_force(step, force, alpha, force_end, iterations, error)
     if (allocated(error)) return
-    new%force_iterations = new%force_iterations + iterations
-    correction = correction + (force - new%force)*response
-    new%force = new%force + part*(force - new%force)
+    new%iterations%force = new%iterations%force + iterations
+    correction = correction + (force - new%impact%force)*response
+    new%impact%force = new%impact%force + part*(force - new%impact%force)
   end subroutine find_force_change
 
   !> Force beyond the limit load of a curved plate, which needs less force the further it deflects: the root of
   !> the linearized difference between travel, deflection and indentation. The equilibrium is stable under a given
   !> travel if the contact is stiffer than the plate; otherwise -1.
-  real(wp) function force_beyond_limit(model, new, mean, compliance) result(force)
-    type(model_t), intent(in) :: model
+  real(wp) function force_beyond_limit(plate, new, mean, compliance) result(force)
+    type(composite_plate_t), intent(in) :: plate
     !> State before the correction
     type(state_t), intent(in) :: new
     !> Deflection of the patch after it, with the present force
@@ -88,50 +91,50 @@ contains
     real(wp) :: alpha, flexibility
 
     force = -1
-    if (.not. new%force > 0) return
-    associate (law => model%setup%impactor%indentation)
-      alpha = indentation_of(law, new%indentation, new%force)
-      flexibility = compliance + 1/indentation_stiffness(law, new%indentation, alpha)
+    if (.not. new%impact%force > 0) return
+    associate (law => plate%setup%impactor%indentation)
+      alpha = indentation_of(law, new%impact%indentation, new%impact%force)
+      flexibility = compliance + 1/indentation_stiffness(law, new%impact%indentation, alpha)
     end associate
     if (flexibility < 0) &
-      force = max(0.0_wp, new%force + (new%load_factor*model%setup%impactor%travel - mean - alpha)/flexibility)
+      force = max(0.0_wp, new%impact%force + (new%load_factor*plate%setup%impactor%travel - mean - alpha)/flexibility)
   end function force_beyond_limit
 
   !> Difference between the force and that of the indentation law, relative to the larger of them.
-  real(wp) function force_mismatch(model, new) result(mismatch)
-    type(model_t), intent(in) :: model
+  real(wp) function force_mismatch(plate, new) result(mismatch)
+    type(composite_plate_t), intent(in) :: plate
     !> State at this load
     type(state_t), intent(in) :: new
     real(wp) :: force
 
-    force = indentation_force(model%setup%impactor%indentation, new%indentation, &
-                              new%load_factor*model%setup%impactor%travel - new%contact_deflection(model))
-    mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
+    force = indentation_force(plate%setup%impactor%indentation, new%impact%indentation, &
+                              new%load_factor*plate%setup%impactor%travel - new%contact_deflection(plate))
+    mismatch = abs(force - new%impact%force)/max(force, new%impact%force, tiny(force))
   end function force_mismatch
 
   !> Travel of the impactor for the force and the deflection of a state.
-  real(wp) function travel_for(model, new) result(travel)
-    type(model_t), intent(in) :: model
+  real(wp) function travel_for(plate, new) result(travel)
+    type(composite_plate_t), intent(in) :: plate
     !> The state
     type(state_t), intent(in) :: new
 
-    travel = indentation_of(model%setup%impactor%indentation, new%indentation, new%force) + &
-             new%contact_deflection(model)
+    travel = indentation_of(plate%setup%impactor%indentation, new%impact%indentation, new%impact%force) + &
+             new%contact_deflection(plate)
   end function travel_for
 
   !> Completes an accepted load step: position of the impactor, indentation, and work of the force that drives it.
-  subroutine move_slow_impactor(model, old, new)
-    type(model_t), intent(in) :: model
+  subroutine move_slow_impactor(plate, old, new)
+    type(composite_plate_t), intent(in) :: plate
     !> State at the load before
     type(state_t), intent(in) :: old
     !> State at this load, with its deflections
     type(state_t), intent(inout) :: new
 
-    new%impactor%displacement = new%load_factor*model%setup%impactor%travel
-    call commit_indentation(model%setup%impactor%indentation, new%indentation, &
-                            new%impactor%displacement - new%patch_mean)
-    new%ledger%indentation = new%indentation%work
-    new%ledger%external_work = new%ledger%external_work + new%indentation%work - old%indentation%work + &
-                               (old%force + new%force)/2*(new%patch_mean - old%patch_mean)
+    new%impact%impactor%displacement = new%load_factor*plate%setup%impactor%travel
+    call commit_indentation(plate%setup%impactor%indentation, new%impact%indentation, &
+                            new%impact%impactor%displacement - new%impact%patch_mean)
+    new%ledger%indentation = new%impact%indentation%work
+    new%ledger%external_work = new%ledger%external_work + new%impact%indentation%work - old%impact%indentation%work + &
+                               (old%impact%force + new%impact%force)/2*(new%impact%patch_mean - old%impact%patch_mean)
   end subroutine move_slow_impactor
 end module slow_impactors

@@ -4,6 +4,7 @@ module static_steps
   use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none, law_cohesive
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use newton_iterations, only: newton_iteration_t
   use states, only: state_t
@@ -37,15 +38,15 @@ module static_steps
 contains
 
   !> Step to a load.
-  pure function new_static_step(model, time, load_factor) result(self)
-    type(model_t), intent(in) :: model
+  pure function new_static_step(plate, time, load_factor) result(self)
+    type(composite_plate_t), intent(in) :: plate
     !> Time at the end of the step
     real(wp), intent(in) :: time
     !> Load relative to the full load
     real(wp), intent(in) :: load_factor
     type(static_step_t) :: self
 
-    self%may_be_shortened = model%setup%mesh%kinematics /= kinematics_linear .or. model%setup%is_bimodular()
+    self%may_be_shortened = plate%setup%mesh%kinematics /= kinematics_linear .or. plate%setup%is_bimodular()
     self%time = time
     self%load_factor = load_factor
   end function new_static_step
@@ -70,8 +71,8 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
       call new%find_internal(model, old, at%energy)
-      call model%static_loads(new%motion%displacement, new%load_factor, residual)
-      call add_impactor_force(model, new, new%force, residual)
+      call model%loads%static_loads(new%motion%displacement, new%load_factor, residual)
+      call add_impactor_force(model%plate, new, new%impact%force, residual)
       residual = residual - new%motion%internal
     end associate
   end subroutine find_residual
@@ -86,14 +87,14 @@ contains
 
     associate (model => at%model, operator => at%operator, new => at%new)
       allocate (loads, mold=at%residual)
-      call model%static_loads(new%motion%displacement, new%load_factor, loads)
-      call add_impactor_force(model, new, new%force, loads)
+      call model%loads%static_loads(new%motion%displacement, new%load_factor, loads)
+      call add_impactor_force(model%plate, new, new%impact%force, loads)
       references(:, 1) = sums_of_squares(operator%numbering, new%motion%internal)
       references(:, 2) = sums_of_squares(operator%numbering, loads)
       ! A second iteration removes the round-off of the first, so it is required.
-      residual_norm = relative_residual(model, operator, at%equilibrium, at%residual, references, &
-                                        new%motion%displacement, new%iterations > 1, new%largest_forces)
-      if (model%setup%impactor%is_present) residual_norm = max(residual_norm, force_mismatch(model, new))
+      residual_norm = relative_residual(model%plate, operator, at%equilibrium, at%residual, references, &
+                                        new%motion%displacement, new%iterations%equilibrium > 1, new%largest_forces)
+      if (model%plate%setup%impactor%is_present) residual_norm = max(residual_norm, force_mismatch(model%plate, new))
     end associate
   end function residual_norm
 
@@ -115,12 +116,12 @@ contains
 
     at%negative_curvature = .false.
     associate (model => at%model, operator => at%operator, new => at%new)
-      if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
+      if (.not. operator%ready .or. tangent_changes(model, new%iterations%equilibrium)) &
         call operator%renew(model, new, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) &
         call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
       if (.not. allocated(error)) call self%complete_correction(at, error)
-      if (.not. allocated(error)) call new%interfaces%contact%constrain_correction(model, at%correction)
+      if (.not. allocated(error)) call new%interfaces%contact%constrain_correction(model%plate, at%correction)
     end associate
   end subroutine find_correction
 
@@ -133,10 +134,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     associate (model => at%model, operator => at%operator, new => at%new, correction => at%correction)
-      if (model%setup%impactor%is_present) &
-        call find_force_change(model, operator, self%correction_factor(new%iterations), new, correction, error)
+      if (model%plate%setup%impactor%is_present) &
+        call find_force_change(model, operator, self%correction_factor(new%iterations%equilibrium), new, correction, &
+                               error)
       if (allocated(error)) error%code = exit_convergence
-      correction = self%correction_factor(new%iterations)*correction
+      correction = self%correction_factor(new%iterations%equilibrium)*correction
     end associate
   end subroutine complete_correction
 
@@ -146,14 +148,15 @@ contains
     !> Iterations of this step so far
     integer, intent(in) :: iterations
 
-    tangent_changes = model%setup%mesh%kinematics /= kinematics_linear .or. model%rig%unilateral
-    if (model%map%layered) tangent_changes = tangent_changes .or. any(model%setup%delaminations%law == law_cohesive)
+    tangent_changes = model%plate%setup%mesh%kinematics /= kinematics_linear .or. model%rig%unilateral
+    if (model%plate%map%layered) tangent_changes = tangent_changes &
+                                                   .or. any(model%plate%setup%delaminations%law == law_cohesive)
     ! Plies may have failed since the step before; later only contacts change.
-    if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%setup%ply_damage%is_present &
-                                                                        .or. model%map%layered)
-    tangent_changes = tangent_changes .or. model%setup%has_crack_bands() .or. model%setup%is_bimodular()
-    if (tangent_changes .or. .not. model%map%layered) return
-    tangent_changes = any(model%setup%delaminations%contact /= contact_none)
+    if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%plate%setup%ply_damage%is_present &
+                                                                        .or. model%plate%map%layered)
+    tangent_changes = tangent_changes .or. model%plate%setup%has_crack_bands() .or. model%plate%setup%is_bimodular()
+    if (tangent_changes .or. .not. model%plate%map%layered) return
+    tangent_changes = any(model%plate%setup%delaminations%contact /= contact_none)
   end function tangent_changes
 
   !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows. Once there
@@ -184,38 +187,38 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new)
       allocate (loads, loads_before, mold=old%motion%internal)
-      call model%static_loads(new%motion%displacement, new%load_factor, loads)
+      call model%loads%static_loads(new%motion%displacement, new%load_factor, loads)
       call loads_carried(model, old, loads_before)
       change = new%motion%displacement - old%motion%displacement
       sums(1) = at%energy
-      sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
-      sums(3) = model%product(change, loads + loads_before)/2
+      sums(2) = model%plate%product(change, new%motion%internal + old%motion%internal)/2
+      sums(3) = model%plate%product(change, loads + loads_before)/2
       sums(4:5) = 0
       if (model%has_point_stiffness) then
         contact = old%interfaces%contact_work(model, old%motion%displacement, change)
         sums(4) = (contact + new%interfaces%contact_work(model, new%motion%displacement, change))/2
         sums(5) = contact/2
       end if
-      sums(6) = model%product(change, loads - loads_before)/2
+      sums(6) = model%plate%product(change, loads - loads_before)/2
       ! After failures of plies or a change of the contact area the previous state is not in equilibrium; the energy
       ! released would become kinetic energy.
-      call add_impactor_force(model, old, old%force, loads_before)
-      sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-      if (.not. (model%setup%ply_damage%is_present .or. allocated(model%nose))) sums(5) = 0
-      call model%communicator%sum(sums)
-      sums = sums*model%mesh%multiplicity
+      call add_impactor_force(model%plate, old, old%impact%force, loads_before)
+      sums(5) = sums(5) + model%plate%product(change, loads_before - old%motion%internal)/2
+      if (.not. (model%plate%setup%ply_damage%is_present .or. allocated(model%nose))) sums(5) = 0
+      call model%plate%communicator%sum(sums)
+      sums = sums*model%plate%mesh%multiplicity
       call new%count_step(old)
-      new%deflection = model%deflection(new%motion%displacement)
-      new%patch_mean = new%contact_deflection(model)
+      new%impact%deflection = model%plate%deflection(new%motion%displacement)
+      new%impact%patch_mean = new%contact_deflection(model%plate)
       new%ledger%strain = sums(1)
       new%ledger%external_work = old%ledger%external_work + sums(3)
       new%ledger%contact = old%ledger%contact - sums(4)
-      fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
-      heat = new%interfaces%friction_heat(model, old%interfaces)
+      fracture = new%interfaces%cohesive%dissipation(model%plate, old%interfaces%cohesive)
+      heat = new%interfaces%friction_heat(model%plate, old%interfaces)
       new%ledger%friction = old%ledger%friction + heat
-      if (model%setup%impactor%is_present) call move_slow_impactor(model, old, new)
-      sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
-      call new%plies%record(model, damage)
+      if (model%plate%setup%impactor%is_present) call move_slow_impactor(model%plate, old, new)
+      sums(6) = sums(6) + (new%impact%force - old%impact%force)*(new%impact%patch_mean - old%impact%patch_mean)/2
+      call new%plies%record(model%plate, damage)
       new%ledger%ply_damage = old%ledger%ply_damage + damage
       new%ledger%delamination = old%ledger%delamination + fracture
       excess = sums(1) - old%ledger%strain - sums(2)
@@ -252,10 +255,10 @@ contains
     real(wp), intent(inout) :: loads(:, :)
 
     if (state%step > 0) then
-      call model%static_loads(state%motion%displacement, state%load_factor, loads)
+      call model%loads%static_loads(state%motion%displacement, state%load_factor, loads)
     else
       loads = 0
-      call model%add_holding_lines(state%motion%displacement, loads)
+      call model%loads%add_holding_lines(state%motion%displacement, loads)
     end if
   end subroutine loads_carried
 end module static_steps

@@ -36,13 +36,13 @@ contains
     real(wp), allocatable :: change(:)
 
     if (.not. allocated(model%nose)) return
-    associate (w => now%motion%displacement(3, :), contact => now%contact)
-      change = relaxation*(weights_of(model, w, now%indentation%alpha) - contact%weights)
-      if (.not. total_of(model%communicator, abs(change)) > negligible) return
-      call contact%spread(contact%weights + change, contact%offset - total_of(model%communicator, change*w))
-      contact%area = model%nose%area_of(model%communicator, contact%weights)
+    associate (w => now%motion%displacement(3, :), contact => now%impact%patch)
+      change = relaxation*(weights_of(model, w, now%impact%indentation%alpha) - contact%weights)
+      if (.not. total_of(model%plate%communicator, abs(change)) > negligible) return
+      call contact%spread(contact%weights + change, contact%offset - total_of(model%plate%communicator, change*w))
+      contact%area = model%nose%area_of(model%plate%communicator, contact%weights)
     end associate
-    if (operator%ready) call operator%find_response(model, now%contact, error)
+    if (operator%ready) call operator%find_response(model%plate, now%impact%patch, error)
   end subroutine update_contact_area
 
   !> Weights of the force distribution, with the sum 1 over the modelled part. Collective.
@@ -58,12 +58,12 @@ contains
 
     weights = model%patch%weights
     if (.not. indentation > 0) return
-    pressures = model%nose%nose%foundation(model%nose%deflections(model%communicator, w), indentation)
+    pressures = model%nose%nose%foundation(model%nose%deflections(model%plate%communicator, w), indentation)
     ! If the indentation is below the round-off of the deflections, all pressures may be zero.
     if (.not. sum(pressures) > 0) return
     weights = model%nose%to_local(pressures/sum(pressures), size(w))
     associate (patch => model%patch%weights)
-      weights = merge(total_of(model%communicator, merge(weights, 0.0_wp, patch > 0))*patch, weights, patch > 0)
+      weights = merge(total_of(model%plate%communicator, merge(weights, 0.0_wp, patch > 0))*patch, weights, patch > 0)
     end associate
   end function weights_of
 end module contact_updates

@@ -11,6 +11,7 @@ module explicit_steppers
   use layer_switches, only: find_required_layers, has_adaptive_layers, insert_layers, move_with_plate
   use layer_transfers, only: layer_transfer_t
   use linear_solver_parameters, only: linear_solver_parameters_t
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use separated_elements, only: separate_unequal, visit_separated
   use setups, only: setup_t
@@ -72,7 +73,7 @@ contains
     self%stepping = stepping
     self%smallest_step = stepping%time%step_min
     allocate (self%now, source=new_state(model))
-    self%unknowns = count(.not. model%fixed)
+    self%unknowns = count(.not. model%plate%constraints%fixed)
     if (.not. resumed .and. has_initial_motion(model)) &
       call equilibrate_initial_stresses(self%operator, model, linear_solver, self%now, error)
     if (.not. allocated(error)) call self%method%start(model, stepping%central, self%now)
@@ -101,16 +102,16 @@ contains
     logical, intent(out) :: switched
     !> Set if the model cannot be built
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: extents(2, size(model%mesh%zones))
+    real(wp) :: extents(2, size(model%plate%mesh%zones))
 
     switched = .false.
     call self%advance(model, event, error)
     if (allocated(error) .or. .not. has_adaptive_layers(model)) return
     if (modulo(self%now%step, steps_between_zone_checks) > 0) return
-    call model%profile%enter('layers')
-    call find_required_layers(model, self%now, extents, switched)
+    call model%plate%profile%enter('layers')
+    call find_required_layers(model%plate, self%now, extents, switched)
     if (switched) call insert_layers(model, self, linear_solver, extents, error)
-    call model%profile%leave()
+    call model%plate%profile%leave()
   end subroutine advance_with_layers
 
   !> Gives new layers the motion of the single plate, and computes their forces. Collective.
@@ -123,9 +124,9 @@ contains
 
     associate (now => self%now)
       before = now%ledger%kinetic + now%ledger%strain
-      call move_with_plate(model, transfer, now%motion%displacement)
-      call move_with_plate(model, transfer, now%motion%velocity)
-      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      call move_with_plate(model%plate, transfer, now%motion%displacement)
+      call move_with_plate(model%plate, transfer, now%motion%velocity)
+      call now%plies%restack(model%plate, transfer%is_split(model%plate%distribution%elements))
       call self%method%resume(model, now)
       call self%method%renew_forces(model, now)
       call self%complete_state(model, error)
@@ -147,17 +148,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     associate (now => self%now, method => self%method)
-      call move_with_plate(model, transfer, now%motion%displacement)
-      call move_with_plate(model, transfer, now%motion%velocity)
+      call move_with_plate(model%plate, transfer, now%motion%displacement)
+      call move_with_plate(model%plate, transfer, now%motion%velocity)
       if (motion == motion_rest) now%motion%velocity = 0
-      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      call now%plies%restack(model%plate, transfer%is_split(model%plate%distribution%elements))
       if (allocated(now%plies%bands)) call separate_unequal(now%plies%bands)
-      call method%lines%start_from(model, method%inertia, model%motion_of(now%motion%displacement))
+      call method%lines%start_from(model, method%inertia, model%plate%motion_of(now%motion%displacement))
       call method%resume(model, now)
       call method%renew_forces(model, now)
-      now%deflection = model%deflection(now%motion%displacement)
-      now%patch_mean = now%contact_deflection(model)
-      if (model%setup%impactor%is_present) call method%impact%place(model, now)
+      now%impact%deflection = model%plate%deflection(now%motion%displacement)
+      now%impact%patch_mean = now%contact_deflection(model%plate)
+      if (model%plate%setup%impactor%is_present) call method%impact%place(model, now)
       call record_energies(method, model, now)
       now%ledger%initial = now%ledger%initial + now%ledger%error()
       call self%complete_state(model, error)
@@ -184,8 +185,8 @@ contains
 
     call self%now%visit(archive, model)
     call self%method%visit(archive, model)
-    if (model%setup%initial%is_inherited .and. allocated(self%now%plies%bands)) &
-      call visit_separated(self%now%plies%bands, archive, model)
+    if (model%plate%setup%initial%is_inherited .and. allocated(self%now%plies%bands)) &
+      call visit_separated(self%now%plies%bands, archive, model%plate)
     call archive%item('operator/factorizations', self%operator%factorizations)
     call archive%item('operator/solves', self%operator%solves)
     if (archive%loading) call self%method%resume(model, self%now)
@@ -262,35 +263,35 @@ contains
     character(len=:), allocatable :: shares
     integer :: most, least
 
-    most = size(model%distribution%elements)
+    most = size(model%plate%distribution%elements)
     least = most
-    call model%communicator%maximum(most)
-    call model%communicator%minimum(least)
+    call model%plate%communicator%maximum(most)
+    call model%plate%communicator%minimum(least)
     shares = ''
-    if (model%communicator%size > 1) shares = ' of '//to_text(least)//' to '//counted(to_text(most), 'element')
-    lines = [line_t('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
+    if (model%plate%communicator%size > 1) shares = ' of '//to_text(least)//' to '//counted(to_text(most), 'element')
+    lines = [line_t('Model: '//counted(to_text(model%plate%mesh%elements()), 'element')//', '// &
                     counted(to_text(self%unknowns), 'unknown')//', '// &
-                    counted(to_text(model%communicator%size), 'rank')//shares//'.'), &
+                    counted(to_text(model%plate%communicator%size), 'rank')//shares//'.'), &
              line_t('Stable step '//rounded_text(2/self%method%frequency)//' by element '// &
-                    to_text(self%method%element)//' '//place_of(model, self%method%element)// &
+                    to_text(self%method%element)//' '//place_of(model%plate, self%method%element)// &
                     ', shorter during contact; steps are at most '// &
                     rounded_text(self%method%parameters%step_factor)//' of it.')]
   end function model_sentences
 
   !> Where an element is.
-  pure function place_of(model, element) result(place)
-    type(model_t), intent(in) :: model
+  pure function place_of(plate, element) result(place)
+    type(composite_plate_t), intent(in) :: plate
     !> Element of the mesh
     integer, intent(in) :: element
     !> Plies and middle
     character(len=:), allocatable :: place
     integer :: plies(2), at(2)
 
-    plies = model%mesh%plies_of(element)
-    at = model%mesh%place_of(model%mesh%element_cell(element))
+    plies = plate%mesh%plies_of(element)
+    at = plate%mesh%place_of(plate%mesh%element_cell(element))
     place = 'of plies '//to_text(plies(1))//' to '//to_text(plies(2))//' at x = '// &
-            short_text(sum(model%mesh%along(1)%ends(at(1)))/2)//', y = '// &
-            short_text(sum(model%mesh%along(2)%ends(at(2)))/2)
+            short_text(sum(plate%mesh%along(1)%ends(at(1)))/2)//', y = '// &
+            short_text(sum(plate%mesh%along(2)%ends(at(2)))/2)
   end function place_of
 
   !> The method as the subject of a sentence.

@@ -29,21 +29,21 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: kept
 
-    if (now%holds_damage .and. .not. now%time < model%setup%loading%start) call release_damage(method, model, now)
+    if (now%holds_damage .and. .not. now%time < model%plate%setup%loading%start) call release_damage(method, model, now)
     kept = 1
-    if (is_damped(method, model, now)) call damp_motion(method, model, now, method%parameters%settle, kept)
+    if (is_damped(method, model, now)) call damp_motion(method, model%plate, now, method%parameters%settle, kept)
     call method%advance(model, event, kept, now)
-    if (model%setup%ply_damage%is_present .and. .not. (allocated(now%plies%bands) .or. now%holds_damage)) then
-      call model%profile%enter('ply criteria')
-      call now%plies%grow(model, now%motion%displacement)
-      call model%profile%leave()
+    if (model%plate%setup%ply_damage%is_present .and. .not. (allocated(now%plies%bands) .or. now%holds_damage)) then
+      call model%plate%profile%enter('ply criteria')
+      call now%plies%grow(model%plate, now%motion%displacement)
+      call model%plate%profile%leave()
       if (now%plies%softened) call method%record_failures(model, now)
     end if
     if (modulo(now%step, steps_between_flaws) > 0) return
-    call model%profile%enter('flaws')
-    call update_flaws(model, now%plies, now%motion%displacement, now%interfaces)
-    if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
-    call model%profile%leave()
+    call model%plate%profile%enter('flaws')
+    call update_flaws(model%plate, now%plies, now%motion%displacement, now%interfaces)
+    if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
+    call model%plate%profile%leave()
   end subroutine advance_explicit
 
   !> Lets damage grow again in a plate that has come to rest.
@@ -54,7 +54,7 @@ contains
     type(state_t), intent(inout) :: now
 
     call now%hold_damage(.false.)
-    if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
+    if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
   end subroutine release_damage
 
   !> True while damping brings the plate to rest: before lines or an impactor begin to load it, or once the impactor has
@@ -65,9 +65,9 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
 
-    is_damped = now%time < model%setup%loading%start
-    if (.not. (model%setup%impactor%is_present .and. method%parameters%settle > 0)) return
-    is_damped = is_damped .or. now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
+    is_damped = now%time < model%plate%setup%loading%start
+    if (.not. (model%plate%setup%impactor%is_present .and. method%parameters%settle > 0)) return
+    is_damped = is_damped .or. now%time > 0 .and. .not. now%impact%force > 0 .and. now%impact%impactor%velocity < 0
   end function is_damped
 
   !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.
@@ -80,14 +80,15 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (allocated(model%nose)) then
-      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), now%contact%offset)
-      now%contact%area = method%impact%patch%area
+      call now%impact%patch%spread(method%impact%patch%local_weights(size(model%patch%weights)), &
+                                   now%impact%patch%offset)
+      now%impact%patch%area = method%impact%patch%area
     end if
     call record_energies(method, model, now)
     now%interfaces%rig%found = method%rigs%reactions_of(model, method%force, now%motion%displacement)
-    if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
-    now%stress = struck_stress(model, now%motion%displacement)
-    now%largest_stress = max(now%largest_stress, now%stress)
-    call check_stability(model, now, error)
+    if (size(model%loads%lines) > 0) now%line_reactions = method%lines%totals(model)
+    now%impact%stress = struck_stress(model%plate, now%motion%displacement)
+    now%impact%largest_stress = max(now%impact%largest_stress, now%impact%stress)
+    call check_stability(model%plate, now, error)
   end subroutine complete_step
 end module explicit_steps

@@ -57,12 +57,12 @@ contains
     self%smallest_step = stepping%time%step_min
     allocate (self%now, source=new_state(model))
     allocate (self%trial, source=self%now)
-    if (model%setup%is_static()) then
+    if (model%plate%setup%is_static()) then
       allocate (load_steps_t :: self%kind)
     else
       allocate (motion_steps_t :: self%kind)
     end if
-    if (model%setup%loading%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
+    if (model%plate%setup%loading%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
@@ -109,10 +109,10 @@ contains
       if (allocated(error)) return
       if (converged) then
         accurate = .true.
-        if (self%is_error_controlled) call assess_error(self, model, step, shortest, accurate)
+        if (self%is_error_controlled) call assess_error(self, model%plate, step, shortest, accurate)
         if (accurate) return
       else
-        call reject_step(self, model, step, error)
+        call reject_step(self, model%plate, step, error)
         if (allocated(error)) return
       end if
     end do
@@ -128,7 +128,7 @@ contains
     logical, intent(out) :: switched
     type(error_t), allocatable, intent(out) :: error
     type(step_memory_t) :: memory
-    real(wp) :: extents(2, size(model%mesh%zones))
+    real(wp) :: extents(2, size(model%plate%mesh%zones))
     logical :: repeats, more
 
     switched = .false.
@@ -138,13 +138,13 @@ contains
       memory = save_state(self)
       call self%advance(model, event, error)
       if (allocated(error)) return
-      call model%profile%enter('layers')
-      call find_required_layers(model, self%now, extents, more)
-      repeats = more .and. any(self%now%interfaces%border_reached .and. model%setup%delaminations%is_adaptive)
+      call model%plate%profile%enter('layers')
+      call find_required_layers(model%plate, self%now, extents, more)
+      repeats = more .and. any(self%now%interfaces%border_reached .and. model%plate%setup%delaminations%is_adaptive)
       if (repeats) call memory%restore_state(self)
       if (more) call insert_layers(model, self, linear_solver, extents, error)
       switched = switched .or. more
-      call model%profile%leave()
+      call model%plate%profile%leave()
       if (allocated(error)) return
     end do
     if (.not. allocated(error)) call update_contact_area(model, self%now, self%operator, error)
@@ -159,7 +159,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call transfer_state(model, transfer, self%now)
-    if (allocated(self%now%path%change)) call move_with_plate(model, transfer, self%now%path%change)
+    if (allocated(self%now%path%change)) call move_with_plate(model%plate, transfer, self%now%path%change)
   end subroutine take_layers
 
   !> Saves or loads the evolving state.
@@ -171,9 +171,9 @@ contains
 
     call self%now%visit(archive, model)
     call self%controller%visit(archive)
-    if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
+    if (allocated(self%step_error%share)) call self%step_error%visit(archive, model%plate)
     call archive%item('stepper/rejected', self%rejected)
-    call self%operator%visit(archive, model, self%now%contact, error)
+    call self%operator%visit(archive, model, self%now%impact%patch, error)
   end subroutine visit
 
   !> Length of the last step.
@@ -203,9 +203,9 @@ contains
     type(model_t), intent(in) :: model
     type(line_t), allocatable :: lines(:)
 
-    lines = [line_t('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
+    lines = [line_t('Model: '//counted(to_text(model%plate%mesh%elements()), 'element')//', '// &
                     counted(to_text(self%unknowns), 'unknown')//', '// &
-                    counted(to_text(model%communicator%size), 'rank')//', factored by '// &
+                    counted(to_text(model%plate%communicator%size), 'rank')//', factored by '// &
                     self%operator%solver%package_used()//'.')]
   end function model_sentences
 
@@ -242,8 +242,8 @@ contains
 
     associate (now => self%now, operator => self%operator)
       line = counted(to_text(now%step), 'step')//' ('//to_text(self%rejected)//' rejected), '// &
-             counted(to_text(now%all_iterations), 'iteration')//' of equilibrium, '// &
-             to_text(now%all_force_iterations)//' of the force, '// &
+             counted(to_text(now%all_iterations%equilibrium), 'iteration')//' of equilibrium, '// &
+             to_text(now%all_iterations%force)//' of the force, '// &
              counted(to_text(operator%factorizations), 'factorization')//', '// &
              counted(to_text(operator%solves), 'solve')//' by '//operator%solver%package_used()
     end associate

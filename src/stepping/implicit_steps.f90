@@ -2,6 +2,7 @@
 module implicit_steps
   use errors, only: error_t
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use newmark_integrators, only: plate_integrator_t
   use states, only: state_t
@@ -138,19 +139,19 @@ contains
   end subroutine equilibrate
 
   !> Energy to be dissipated per unit of pseudo-time in the remaining steps, so that the total is that of the deck.
-  pure real(wp) function energy_rate(self, model)
+  pure real(wp) function energy_rate(self, plate)
     class(implicit_steps_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
-    energy_rate = max(0.0_wp, model%setup%loading%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
+    energy_rate = max(0.0_wp, plate%setup%loading%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
   end function energy_rate
 
   !> Pseudo-time of a step under control of dissipation over that of a step under load control; 1 for the latter.
-  pure real(wp) function step_scale(self, model)
+  pure real(wp) function step_scale(self, plate)
     class(implicit_steps_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
     step_scale = 1
-    if (self%now%path%by_dissipation) step_scale = model%setup%loading%dissipation/self%energy_rate(model)
+    if (self%now%path%by_dissipation) step_scale = plate%setup%loading%dissipation/self%energy_rate(plate)
   end function step_scale
 end module implicit_steps

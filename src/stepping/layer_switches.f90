@@ -11,6 +11,7 @@ module layer_switches
   use layered_meshes, only: layered_mesh_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use model_building, only: create_model
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use profiles, only: profile_t
   use setups, only: setup_t
@@ -25,24 +26,24 @@ module layer_switches
 contains
 
   !> Extents of the layered zones that the damage requires. Collective.
-  subroutine find_required_layers(model, now, extents, more)
-    type(model_t), intent(in) :: model
+  subroutine find_required_layers(plate, now, extents, more)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Full extents of the zones along x and y, (2, zones)
     real(wp), intent(out) :: extents(:, :)
     !> True: they are larger than the present ones
     logical, intent(out) :: more
 
-    extents = required_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
-    more = any(extents > present_extents(model%setup))
+    extents = required_extents(plate, now%plies%stiffness, now%interfaces, now%motion%displacement)
+    more = any(extents > present_extents(plate%setup))
   end subroutine find_required_layers
 
   !> True if there are adaptive layers.
   pure logical function has_adaptive_layers(model)
     type(model_t), intent(in) :: model
 
-    has_adaptive_layers = model%map%layered
-    if (has_adaptive_layers) has_adaptive_layers = any(model%setup%delaminations%is_adaptive)
+    has_adaptive_layers = model%plate%map%layered
+    if (has_adaptive_layers) has_adaptive_layers = any(model%plate%setup%delaminations%is_adaptive)
   end function has_adaptive_layers
 
   !> Extents of the zones.
@@ -74,7 +75,7 @@ contains
     type(stepping_t) :: stepping
     integer :: zone
 
-    transfer%communicator = model%communicator
+    transfer%communicator = model%plate%communicator
     call stepper%complete_state(model, error)
     if (allocated(error)) return
     stepper%operator%ready = .false.
@@ -82,19 +83,19 @@ contains
     if (allocated(error)) return
     timers = stepper%operator%timers
     call stepper%operator%release()
-    setup = model%setup
+    setup = model%plate%setup
     do zone = 1, size(extents, 2)
       setup%delaminations(zone)%zone = extents(:, zone)
     end do
-    mesh = model%mesh
-    profile = model%profile
+    mesh = model%plate%mesh
+    profile = model%plate%profile
     call create_model(setup, transfer%communicator, model, error)
-    model%profile = profile
+    model%plate%profile = profile
     if (allocated(error)) return
     stepping = stepper%stepping
     call stepper%start(model, stepping, linear_solver, .true., error)
     if (allocated(error)) return
-    call transfer%turn_to(mesh, model%mesh)
+    call transfer%turn_to(mesh, model%plate%mesh)
     call stepper%visit(transfer, model, error)
     if (allocated(error)) return
     stepper%operator%timers = timers
@@ -102,20 +103,20 @@ contains
   end subroutine insert_layers
 
   !> Gives the new layers the rotations of the layer above, and zero jumps.
-  subroutine move_with_plate(model, transfer, field)
-    type(model_t), intent(in) :: model
+  subroutine move_with_plate(plate, transfer, field)
+    type(composite_plate_t), intent(in) :: plate
     !> Map of points from the former mesh
     class(layer_transfer_t), intent(in) :: transfer
     !> Displacement or a rate of it, (5, points)
     real(wp), intent(inout) :: field(:, :)
     integer :: i
 
-    do i = 1, model%distribution%owned
-      if (transfer%point_origin(model%distribution%points(i)) > 0) cycle
+    do i = 1, plate%distribution%owned
+      if (transfer%point_origin(plate%distribution%points(i)) > 0) cycle
       field(1:3, i) = 0
-      field(4:5, i) = field(4:5, model%map%above(i))
+      field(4:5, i) = field(4:5, plate%map%above(i))
     end do
-    call model%halo%update(field)
+    call plate%halo%update(field)
   end subroutine move_with_plate
 
 end module layer_switches

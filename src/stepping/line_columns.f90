@@ -3,7 +3,7 @@ module line_columns
   use kinds, only: wp
   use line_loads, only: line_load_t
   use mesh_parameters, only: is_halved, plate_t
-  use plate_loads, only: loaded_plate_t
+  use models, only: model_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use states, only: state_t
@@ -31,7 +31,7 @@ contains
 
   !> Load factor, then force and displacement of every line. Collective.
   function line_values(model, now) result(values)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> One value per column, the same on every rank; none without lines
     real(wp), allocatable :: values(:)
@@ -39,16 +39,17 @@ contains
     integer :: i
 
     allocate (values(0))
-    if (size(model%lines) == 0) return
-    totals = totals_of(model%communicator, [(model%lines(i)%totals(now%motion%displacement, now%load_factor), &
-                                             i=1, size(model%lines))])
+    if (size(model%loads%lines) == 0) return
+    totals = totals_of(model%plate%communicator, &
+                       [(model%loads%lines(i)%totals(now%motion%displacement, now%load_factor), &
+                                             i=1, size(model%loads%lines))])
     do i = 1, size(totals), 3
       ! Supports that fix the entire line fix its mean, too.
       values = [values, totals(i), totals(i + 1)/max(1 - totals(i + 2), tiny(1.0_wp))]
     end do
     if (allocated(now%line_reactions)) then
-      do i = 1, size(model%lines)
-        if (model%lines(i)%load%prescribed) values(2*i - 1) = now%line_reactions(i)
+      do i = 1, size(model%loads%lines)
+        if (model%loads%lines(i)%load%prescribed) values(2*i - 1) = now%line_reactions(i)
       end do
     end if
     values = [now%load_factor, values]
@@ -83,33 +84,34 @@ contains
 
   !> Axis along which lines displace ends of the plate; 0: none do.
   pure integer function pressed_axis(model) result(along)
-    class(loaded_plate_t), intent(in) :: model
-    logical :: on(size(model%lines))
+    type(model_t), intent(in) :: model
+    logical :: on(size(model%loads%lines))
 
     along = 0
-    on = on_ends(model%setup%plate, model%lines%load)
-    if (any(on)) along = model%lines(findloc(on, .true., dim=1))%load%component
+    on = on_ends(model%plate%setup%plate, model%loads%lines%load)
+    if (any(on)) along = model%loads%lines(findloc(on, .true., dim=1))%load%component
   end function pressed_axis
 
   !> Far-field stress and shortening, from forces and displacements of the lines.
   pure function end_values(model, values) result(ends)
-    class(loaded_plate_t), intent(in) :: model
+    type(model_t), intent(in) :: model
     !> Load factor, then force and displacement of every line
     real(wp), intent(in) :: values(:)
     !> One value per column; none without such lines
     real(wp), allocatable :: ends(:)
-    real(wp) :: sides(size(model%lines))
-    logical :: on(size(model%lines)), halved(2)
+    real(wp) :: sides(size(model%loads%lines))
+    logical :: on(size(model%loads%lines)), halved(2)
     integer :: i, along
 
     allocate (ends(0))
-    associate (plate => model%setup%plate, lines => model%lines%load)
+    associate (plate => model%plate%setup%plate, lines => model%loads%lines%load)
       on = on_ends(plate, lines)
       if (.not. any(on)) return
       along = pressed_axis(model)
       sides = merge(sign(1.0_wp, lines%at), 0.0_wp, on)
       halved = is_halved(plate%symmetry)
-      ends = [-sum([(sides(i)*values(2*i), i=1, size(on))])/(count(on)*plate%length(3 - along)*model%thickness), &
+      ends = [-sum([(sides(i)*values(2*i), i=1, size(on))]) &
+              /(count(on)*plate%length(3 - along)*model%plate%layup%thickness), &
               -merge(2, 1, halved(along))*sum([(sides(i)*values(2*i + 1), i=1, size(on))])]
       ends = [ends, ends(2)/plate%length(along)]
     end associate

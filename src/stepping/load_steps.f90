@@ -35,7 +35,7 @@ contains
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(inout) :: error
 
-    stepper%controller%target = 1.0_wp/model%setup%loading%steps
+    stepper%controller%target = 1.0_wp/model%plate%setup%loading%steps
     stepper%smallest_step = stepper%controller%target/stepper%stepping%controls%load_step_parts
   end subroutine start
 
@@ -52,12 +52,12 @@ contains
     type(static_step_t) :: by_load
 
     associate (now => stepper%now)
-      step = stepper%step_scale(model)
+      step = stepper%step_scale(model%plate)
       step = step*stepper%controller%propose((event - now%time)/step, huge(step))
       if (now%path%by_dissipation) then
         call try_dissipation(stepper, model, step, converged, error)
       else
-        by_load = new_static_step(model, now%time + step, now%load_factor + step)
+        by_load = new_static_step(model%plate, now%time + step, now%load_factor + step)
         call solve_step(by_load, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, converged, &
                         error)
       end if
@@ -78,8 +78,8 @@ contains
     type(dissipation_step_t) :: by_dissipation
 
     associate (now => stepper%now)
-      by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate(model)*step, &
-                                            1.0_wp/model%setup%loading%steps)
+      by_dissipation = new_dissipation_step(model%plate, now%time + step, stepper%energy_rate(model%plate)*step, &
+                                            1.0_wp/model%plate%setup%loading%steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
                       converged, error)
       ! With a larger change of the load another branch of equilibrium might be found that is not connected with the
@@ -95,7 +95,7 @@ contains
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
-      call find_release_ratio(model, trial%plies%stiffness, trial%motion, trial%interfaces)
+      call find_release_ratio(model%plate, trial%plies%stiffness, trial%motion, trial%interfaces)
     end associate
   end subroutine complete_trial
 
@@ -108,7 +108,7 @@ contains
     real(wp), intent(in) :: change
     logical, intent(in) :: extended
 
-    stepper%controller%target = 1.0_wp/model%setup%loading%steps
+    stepper%controller%target = 1.0_wp/model%plate%setup%loading%steps
   end subroutine choose_next
 
   !> Restores equilibrium at constant load after failures of plies, until no more plies fail.
@@ -123,7 +123,7 @@ contains
     logical :: converged
 
     do while (stepper%now%plies%softened)
-      problem = new_static_step(model, stepper%now%time, stepper%now%load_factor)
+      problem = new_static_step(model%plate, stepper%now%time, stepper%now%load_factor)
       call solve_step(problem, model, stepper%stepping%equilibrium, stepper%operator, stepper%now, stepper%trial, &
                       converged, error)
       if (.not. (allocated(error) .or. converged)) &

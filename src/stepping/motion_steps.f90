@@ -42,7 +42,7 @@ contains
       stepper%controller%target = time%step
       stepper%is_error_controlled = is_error_controlled(stepper%stepping%adapt)
       if (stepper%is_error_controlled) call stepper%step_error%start(model, time%step)
-      if (allocated(model%pressure) .or. size(model%lines) > 0) &
+      if (allocated(model%loads%pressure) .or. size(model%loads%lines) > 0) &
         call find_acceleration(model, stepper%operator, stepper%integrator%mass_factor(time%step), stepper%now, error)
     end associate
   end subroutine start
@@ -62,14 +62,14 @@ contains
 
     converged = .false.
     associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
-      step = controller%propose(event - now%time, impactor_limit(model, now, controller%target), &
-                                growth_limit(model, stepping, controller))
+      step = controller%propose(event - now%time, impactor_limit(model%plate, now, controller%target), &
+                                growth_limit(model%plate, stepping, controller))
       call prepare_operator(stepper, model, stepper%integrator%mass_factor(step), factor_is_due, error)
       if (allocated(error)) return
       problem = dynamic_step_t(integrator=stepper%integrator, step=step, renewal=stepping%adapt%iterations, &
                                factor_is_due=factor_is_due)
       call solve_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
-      if (converged .and. model%map%layered) &
+      if (converged .and. model%plate%map%layered) &
         call grow_in_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
       stepper%damage_lag = stepper%trial%plies%damage_lag
       if (converged .and. stepper%damage_lag > 1) &
@@ -95,9 +95,9 @@ contains
       stepper%solves_at_start = operator%solves
       factor_is_due = operator%ready
       if (factor_is_due) then
-        factor_is_due = stepper%controller%renewal_due(stepper%stepping, model%setup%mesh%kinematics == &
-          kinematics_von_karman, mass_factor/operator%mass_factor, now%deflection - operator%deflection, &
-          model%thickness)
+        factor_is_due = stepper%controller%renewal_due(stepper%stepping, model%plate%setup%mesh%kinematics == &
+          kinematics_von_karman, mass_factor/operator%mass_factor, now%impact%deflection - operator%deflection, &
+          model%plate%layup%thickness)
       else
         call operator%renew(model, now, stepper%integrator%stiffness_factor(), mass_factor, error)
       end if
@@ -111,8 +111,8 @@ contains
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
-      trial%interfaces%contact%glued = trial%interfaces%contact%glued .or. model%setup%impactor%is_present &
-        .and. trial%impactor%velocity <= 0 .and. trial%force < stepper%now%force
+      trial%interfaces%contact%glued = trial%interfaces%contact%glued .or. model%plate%setup%impactor%is_present &
+        .and. trial%impact%impactor%velocity <= 0 .and. trial%impact%force < stepper%now%impact%force
     end associate
   end subroutine complete_trial
 
@@ -130,12 +130,12 @@ contains
       ! Excess solves are counted from the step that renewed the operator.
       if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
-      call controller%accept(stepping, step, now%iterations, lag_iterations, change)
-      if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
+      call controller%accept(stepping, step, now%iterations%equilibrium, lag_iterations, change)
+      if (model%plate%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
       if (stepper%is_error_controlled) &
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
-          .not. model%setup%impactor%is_present .or. stepper%step_error%impact_is_over(stepping%expected, now), &
-                                       has_gear(model), now%has_failures())
+          .not. model%plate%setup%impactor%is_present .or. stepper%step_error%impact_is_over(stepping%expected, now), &
+                                       has_gear(model%plate), now%has_failures())
       if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
     end associate
   end subroutine choose_next

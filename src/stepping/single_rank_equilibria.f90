@@ -8,6 +8,7 @@ module single_rank_equilibria
   use layer_transfers, only: layer_transfer_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use model_building, only: create_model
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use states, only: new_state, state_t
   use tangent_operators, only: tangent_operator_t
@@ -29,16 +30,16 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(layer_transfer_t) :: transfer
 
-    associate (ranks => model%communicator)
+    associate (ranks => model%plate%communicator)
       if (ranks%size == 1) then
         call equilibrate(operator, model, linear_solver, now, error)
         return
       end if
-      if (ranks%is_root()) call equilibrate_whole(operator, model, linear_solver, transfer, error)
+      if (ranks%is_root()) call equilibrate_whole(operator, model%plate, linear_solver, transfer, error)
       call ranks%agree(error)
       if (allocated(error)) return
       call transfer%broadcast(ranks)
-      call transfer%turn_to(model%mesh, model%mesh)
+      call transfer%turn_to(model%plate%mesh, model%plate%mesh)
       call now%visit(transfer, model)
       call ranks%broadcast(operator%factorizations)
       call ranks%broadcast(operator%solves)
@@ -46,10 +47,10 @@ contains
   end subroutine equilibrate_initial_stresses
 
   !> Finds the equilibrium of the plate on one rank, and stores it.
-  subroutine equilibrate_whole(operator, model, linear_solver, transfer, error)
+  subroutine equilibrate_whole(operator, plate, linear_solver, transfer, error)
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Receives the state
     type(layer_transfer_t), intent(inout) :: transfer
@@ -60,7 +61,7 @@ contains
     type(state_t), allocatable :: now
 
     allocate (whole)
-    call create_model(model%setup, alone, whole, error)
+    call create_model(plate%setup, alone, whole, error)
     if (allocated(error)) return
     allocate (now, source=new_state(whole))
     call equilibrate(operator, whole, linear_solver, now, error)

@@ -4,6 +4,7 @@ module step_acceptance
   use crack_flaws, only: update_flaws
   use energy_balance, only: record_failures
   use errors, only: error_t, fail, exit_convergence
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use states, only: state_t
   use implicit_steps, only: implicit_steps_t
@@ -25,12 +26,14 @@ contains
     real(wp) :: change
     logical :: extended
 
-    if (model%setup%loading%dissipation > 0 .and. step > 0) &
-      call self%trial%record_path(self%now, model%setup%loading%dissipation)
-    self%trial%stress = struck_stress(model, self%trial%motion%displacement)
-    self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
+    if (model%plate%setup%loading%dissipation > 0 .and. step > 0) &
+      call self%trial%record_path(self%now, model%plate%setup%loading%dissipation)
     change = 0
-    if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
+    associate (now => self%now%impact, trial => self%trial%impact)
+      trial%stress = struck_stress(model%plate, self%trial%motion%displacement)
+      trial%largest_stress = max(now%largest_stress, trial%stress)
+      if (trial%largest_stress > 0) change = abs(trial%stress - now%stress)/trial%largest_stress
+    end associate
     call update_damage(self, model)
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
     if (self%is_error_controlled) then
@@ -49,23 +52,23 @@ contains
     type(model_t), intent(in) :: model
     logical :: reached(size(self%trial%interfaces%border_reached))
 
-    call model%profile%enter('ply criteria')
-    call self%trial%plies%grow(model, self%trial%motion%displacement)
-    call model%profile%leave()
+    call model%plate%profile%enter('ply criteria')
+    call self%trial%plies%grow(model%plate, self%trial%motion%displacement)
+    call model%plate%profile%leave()
     if (self%trial%plies%softened) call record_failures(model, self%now, self%trial)
-    call update_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
+    call update_flaws(model%plate, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
     call self%kind%complete_trial(self, model)
     associate (interfaces => self%trial%interfaces)
       ! A call of its own, which all ranks take part in.
-      reached = interfaces%cohesive%border_reached(model)
+      reached = interfaces%cohesive%border_reached(model%plate)
       interfaces%border_reached = interfaces%border_reached .or. reached
     end associate
   end subroutine update_damage
 
   !> Estimates the error of the trial step and whether it has to be repeated with a shorter length.
-  subroutine assess_error(self, model, step, shortest, accurate)
+  subroutine assess_error(self, plate, step, shortest, accurate)
     class(implicit_steps_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Step tried
     real(wp), intent(in) :: step
     !> Shortest step allowed under error control
@@ -73,7 +76,7 @@ contains
     !> False: the step is too long
     logical, intent(out) :: accurate
 
-    call self%step_error%estimate(model, self%integrator, self%stepping%expected, self%now, self%trial, self%error)
+    call self%step_error%estimate(plate, self%integrator, self%stepping%expected, self%now, self%trial, self%error)
     self%error = self%error/self%stepping%adapt%tolerance
     shortest = self%controller%shortest(self%stepping, self%now%has_failures())
     accurate = self%error <= self%stepping%controls%rejection_error .or. step <= shortest*(1 + 1.0e-9_wp)
@@ -83,21 +86,21 @@ contains
   end subroutine assess_error
 
   !> Prepares a shorter step after a step that has not converged.
-  subroutine reject_step(self, model, step, error)
+  subroutine reject_step(self, plate, step, error)
     class(implicit_steps_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Step tried
     real(wp), intent(in) :: step
     !> Set if it had the smallest length
     type(error_t), allocatable, intent(inout) :: error
 
     self%rejected = self%rejected + 1
-    call self%controller%reject(step/self%step_scale(model))
-    if (step <= self%smallest_step*self%step_scale(model)*(1 + 1.0e-9_wp)) &
-      call fail(error, exit_convergence, 'No equilibrium from '//model%setup%progress_name()//' '// &
+    call self%controller%reject(step/self%step_scale(plate))
+    if (step <= self%smallest_step*self%step_scale(plate)*(1 + 1.0e-9_wp)) &
+      call fail(error, exit_convergence, 'No equilibrium from '//plate%setup%progress_name()//' '// &
                 rounded_text(self%now%time)//' on with the smallest step, '// &
                 trim(rounded_text(step)//'. '//self%operator%solver%fault))
     self%operator%ready = .false.
-    if (model%setup%loading%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
+    if (plate%setup%loading%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
   end subroutine reject_step
 end module step_acceptance

@@ -82,8 +82,8 @@ contains
     !> One value per column
     real(wp) :: values(size(motion_rows))
 
-    values = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
-              now%impactor%velocity, now%deflection]
+    values = [now%time, real(now%step, wp), now%impact%force, now%impact%indentation%alpha, &
+              now%impact%impactor%displacement, now%impact%impactor%velocity, now%impact%deflection]
   end function motion_values
 
   !> The energy ledger.
@@ -113,7 +113,7 @@ contains
     !> One value per column
     real(wp) :: values(size(step_rows))
 
-    values = [now%patch_mean, now%ledger%external_work, shown_time(length), now%stress]
+    values = [now%impact%patch_mean, now%ledger%external_work, shown_time(length), now%impact%stress]
   end function step_values
 
   !> Iterations.
@@ -124,7 +124,7 @@ contains
     !> One value per column
     real(wp) :: values(size(iteration_rows))
 
-    values = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
-                   now%all_force_iterations, now%all_contact_iterations, rejected], wp)
+    values = real([now%iterations%equilibrium, now%iterations%force, now%iterations%contact, &
+                   now%all_iterations%equilibrium, now%all_iterations%force, now%all_iterations%contact, rejected], wp)
   end function iteration_values
 end module step_columns

@@ -4,7 +4,7 @@ module step_limits
   use impact_parameters, only: integrator_gear4
   use impactor_integrators, only: largest_safe_step
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use states, only: state_t
   use step_controllers, only: step_controller_t
   use stepping_parameters, only: stepping_t, is_error_controlled
@@ -16,36 +16,36 @@ contains
 
   !> Longest step allowed by the impactor's integrator, as a binary fraction of the target step, so that small changes
   !> require no factorization.
-  pure real(wp) function impactor_limit(model, now, target) result(limit)
-    type(model_t), intent(in) :: model
+  pure real(wp) function impactor_limit(plate, now, target) result(limit)
+    type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
     !> Target step
     real(wp), intent(in) :: target
 
     limit = huge(limit)
-    if (.not. model%setup%impactor%is_present) return
-    limit = largest_safe_step(model%setup%impactor, model%setup%impactor%indentation, now%indentation, &
-                              now%indentation%alpha, now%impactor%velocity)
+    if (.not. plate%setup%impactor%is_present) return
+    limit = largest_safe_step(plate%setup%impactor, plate%setup%impactor%indentation, now%impact%indentation, &
+                              now%impact%indentation%alpha, now%impact%impactor%velocity)
     if (limit < target) limit = target*2.0_wp**floor(log(limit/target)/log(2.0_wp))
   end function impactor_limit
 
   !> Largest ratio of a step to the previous one allowed by the integrators.
-  pure real(wp) function growth_limit(model, stepping, controller) result(ratio)
-    type(model_t), intent(in) :: model
+  pure real(wp) function growth_limit(plate, stepping, controller) result(ratio)
+    type(composite_plate_t), intent(in) :: plate
     type(stepping_t), intent(in) :: stepping
     type(step_controller_t), intent(in) :: controller
 
     ratio = largest_growth_ratio
     if (.not. (is_error_controlled(stepping%adapt) .or. &
-               model%setup%has_crack_bands() .and. .not. stepping%adapt%on)) return
+               plate%setup%has_crack_bands() .and. .not. stepping%adapt%on)) return
     ratio = 1024
-    if (has_gear(model)) ratio = merge(2, 1, controller%equal_steps >= stepping%controls%equal_of_gear)
+    if (has_gear(plate)) ratio = merge(2, 1, controller%equal_steps >= stepping%controls%equal_of_gear)
   end function growth_limit
 
   !> True: Gear's method integrates the impactor's motion.
-  pure logical function has_gear(model)
-    type(model_t), intent(in) :: model
+  pure logical function has_gear(plate)
+    type(composite_plate_t), intent(in) :: plate
 
-    has_gear = model%setup%impactor%is_present .and. model%setup%impactor%integrator == integrator_gear4
+    has_gear = plate%setup%impactor%is_present .and. plate%setup%impactor%integrator == integrator_gear4
   end function has_gear
 end module step_limits

@@ -5,7 +5,7 @@ module layered_plates
   use delamination_parameters, only: contact_none
   use material_parameters, only: material_t
   use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plate_options, only: kinematics_linear
   use setups, only: setup_t
   implicit none
@@ -85,9 +85,8 @@ contains
   end function layered
 
   !> Delaminates the cells of a range of columns and rows whose centres are within a radius of the origin.
-  subroutine release_cells(model, contact, columns, rows, radius)
-    !> The model
-    type(model_t), intent(in) :: model
+  subroutine release_cells(plate, contact, columns, rows, radius)
+    type(composite_plate_t), intent(in) :: plate
     !> Delaminated cells
     type(contact_and_ties_t), intent(inout) :: contact
     !> Columns and rows, first and last
@@ -99,10 +98,10 @@ contains
 
     do j = rows(1), rows(2)
       do i = columns(1), columns(2)
-        nodes = model%mesh%cell_nodes(model%mesh%cell_at(i, j))
-        if (norm2(model%mesh%node_coordinates(:, nodes(5))) < radius) call contact%regions(1)%release([i, j])
+        nodes = plate%mesh%cell_nodes(plate%mesh%cell_at(i, j))
+        if (norm2(plate%mesh%node_coordinates(:, nodes(5))) < radius) call contact%regions(1)%release([i, j])
       end do
     end do
-    call contact%free_jumps(model)
+    call contact%free_jumps(plate)
   end subroutine release_cells
 end module layered_plates

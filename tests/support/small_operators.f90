@@ -56,15 +56,15 @@ contains
     if (allocated(error)) return
     do i = 1, iterations
       call model%inertia(mode, force)
-      call operator%correct(model, force, mode, error)
+      call operator%correct(model%plate, force, mode, error)
       if (allocated(error)) return
       mode = mode/maxval(abs(mode(3, :)))
     end do
-    call model%internal(model%elements%stiffness, mode, force, energy)
-    products(1) = model%product(mode, force)
+    call model%internal(model%plate%elements%stiffness, mode, force, energy)
+    products(1) = model%plate%product(mode, force)
     call model%inertia(mode, force)
-    products(2) = model%product(mode, force)
-    call model%communicator%sum(products)
+    products(2) = model%plate%product(mode, force)
+    call model%plate%communicator%sum(products)
     frequency = sqrt(products(1)/products(2))
     call operator%release()
   end subroutine find_mode

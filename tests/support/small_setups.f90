@@ -112,12 +112,12 @@ contains
     real(wp), allocatable :: shape(:, :)
     integer :: i
 
-    allocate (shape(5, size(model%distribution%points)), source=0.0_wp)
+    allocate (shape(5, size(model%plate%distribution%points)), source=0.0_wp)
     do i = 1, size(shape, 2)
-      associate (x => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
+      associate (x => model%plate%place_of(i))
         shape(3, i) = sin(m*pi*(x(1) + 0.5_wp))*sin(n*pi*(x(2) + 0.5_wp))
       end associate
     end do
-    where (model%fixed(:, model%distribution%points)) shape = 0
+    where (model%plate%constraints%fixed(:, model%plate%distribution%points)) shape = 0
   end function shaped_like
 end module small_setups

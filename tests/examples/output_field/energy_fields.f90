@@ -1,10 +1,10 @@
 !> A field for the results: the strain energy of each element per area of the plate.
 module energy_fields
+  use composite_plates, only: composite_plate_t
   use element_batches, only: lanes, first_element
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
-  use models, only: model_t
   use output_parameters, only: output_t
   use result_tables, only: result_row_length
   use strain_recovery, only: gauss_strains
@@ -19,9 +19,8 @@ module energy_fields
 contains
 
   !> Writes the field if it is requested.
-  subroutine write_energy_fields(model, stiffness, displacement, output, fields, error)
-    !> The model
-    type(model_t), intent(in) :: model
+  subroutine write_energy_fields(plate, stiffness, displacement, output, fields, error)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
@@ -34,13 +33,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (output%requests('energy')) call fields%write_cell_field( &
-      'strain_energy_density', strain_energy_density(model, stiffness, displacement), error)
+      'strain_energy_density', strain_energy_density(plate, stiffness, displacement), error)
   end subroutine write_energy_fields
 
   !> Strain energy per area, with the current stiffness of the plies.
-  function strain_energy_density(model, stiffness, displacement) result(density)
-    !> The model
-    type(model_t), intent(in) :: model
+  function strain_energy_density(plate, stiffness, displacement) result(density)
+    type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
@@ -51,17 +49,17 @@ contains
     real(wp) :: strains(lanes, 9, 8), energy
     integer :: b, lane, point
 
-    allocate (density(1, model%elements%elements), source=0.0_wp)
-    motion = model%motion_of(displacement)
-    do b = 1, model%elements%batches
-      call gauss_strains(model%elements, b, model%setup%mesh%kinematics, motion, strains)
-      do lane = 1, model%elements%lanes_used(b)
+    allocate (density(1, plate%elements%elements), source=0.0_wp)
+    motion = plate%motion_of(displacement)
+    do b = 1, plate%elements%batches
+      call gauss_strains(plate%elements, b, plate%setup%mesh%kinematics, motion, strains)
+      do lane = 1, plate%elements%lanes_used(b)
         energy = 0
         do point = 1, 9
-          energy = energy + model%elements%weight(lane, point, b) &
+          energy = energy + plate%elements%weight(lane, point, b) &
                    *packed_energy(stiffness(lane, :, b), strains(lane, point, :))
         end do
-        density(1, first_element(b) + lane - 1) = energy/sum(model%elements%weight(lane, :, b))
+        density(1, first_element(b) + lane - 1) = energy/sum(plate%elements%weight(lane, :, b))
       end do
     end do
   end function strain_energy_density

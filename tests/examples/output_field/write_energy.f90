@@ -34,20 +34,21 @@ program write_energy
   call read_deck(trim(path), deck, problems)
   call create_model(deck%setup, communicator, model, error)
   if (allocated(error)) stop 2
-  allocate (bent(5, size(model%distribution%points)), force(5, size(model%distribution%points)), source=0.0_wp)
+  allocate (bent(5, size(model%plate%distribution%points)), force(5, size(model%plate%distribution%points)), &
+            source=0.0_wp)
   do i = 1, size(bent, 2)
-    associate (node => model%mesh%point_node(model%distribution%points(i)))
-      x = model%mesh%node_coordinates(:, node)/deck%setup%plate%length
+    associate (node => model%plate%mesh%point_node(model%plate%distribution%points(i)))
+      x = model%plate%mesh%node_coordinates(:, node)/deck%setup%plate%length
       bent(:, i) = [1e-5_wp*x(2), 2e-5_wp*x(1), 1e-3_wp*(1 - x(1)**2)*(1 - x(2)**2), 1e-2_wp*x(1), -1e-2_wp*x(2)]
     end associate
   end do
   ! A section with all couplings.
-  stiffness = model%elements%stiffness
+  stiffness = model%plate%elements%stiffness
   stiffness(:, [3, 5], :) = stiffness(:, [3, 5], :) + 0.1_wp*stiffness(:, [6, 6], :)
   stiffness(:, 7:12, :) = stiffness(:, 7:12, :) + 1e-4_wp*stiffness(:, 1:6, :)
   stiffness(:, [15, 17], :) = stiffness(:, [15, 17], :) + 0.1_wp*stiffness(:, [18, 18], :)
   stiffness(:, 20, :) = stiffness(:, 20, :) + 0.1_wp*stiffness(:, 21, :)
-  density = strain_energy_density(model, stiffness, bent)
+  density = strain_energy_density(model%plate, stiffness, bent)
   call model%internal(stiffness, bent, force, energy)
   call require('field times areas over strain energy', sum(density(1, :)*areas())/energy, 1.0_wp, 1e-13_wp)
   call write_and_read('example_output_field')
@@ -62,7 +63,7 @@ contains
     integer :: element
 
     do element = 1, size(areas)
-      areas(element) = sum(model%elements%weight(lane_of(element), :, batch_of(element)))
+      areas(element) = sum(model%plate%elements%weight(lane_of(element), :, batch_of(element)))
     end do
   end function areas
 
@@ -81,15 +82,15 @@ contains
     output%fields = 'displacement,energy'
     call fields%describe([field_rows, energy_field_rows])
     call fields%create(communicator, base, this_run(build, deck%text, 1), 'whole', error)
-    if (.not. allocated(error)) call write_mesh(model, fields, error)
+    if (.not. allocated(error)) call write_mesh(model%plate, fields, error)
     call fields%begin(0.0_wp, 0, error)
-    call write_energy_fields(model, stiffness, bent, output, fields, error)
+    call write_energy_fields(model%plate, stiffness, bent, output, fields, error)
     call fields%finish(error)
     if (allocated(error)) stop 3
     found = 0
     call file%open(communicator, base//'.h5', writable=.false.)
-    call read_real_columns(file, 'times/00000001/cells/strain_energy_density', model%distribution%elements, &
-                           model%mesh%elements(), found)
+    call read_real_columns(file, 'times/00000001/cells/strain_energy_density', model%plate%distribution%elements, &
+                           model%plate%mesh%elements(), found)
     call file%close()
     call require('largest difference of what the file holds', maxval(abs(found - density)), 0.0_wp, 0.0_wp)
     open (newunit=unit, file=base//'.h5')

@@ -71,7 +71,7 @@ contains
       if (allocated(error)) stop 5
       largest_error = max(largest_error, abs(stepper%now%ledger%error()))
     end do
-    deflection = stepper%now%deflection
+    deflection = stepper%now%impact%deflection
     largest_error = largest_error/stepper%now%ledger%external_work
     call stepper%operator%release()
   end subroutine follow

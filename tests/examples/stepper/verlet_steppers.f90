@@ -51,9 +51,9 @@ contains
 
     self%stepping = stepping
     self%smallest_step = stepping%time%step_min
-    self%unknowns = count(.not. model%fixed)
-    if (.not. allocated(model%lumped) .or. model%map%layered .or. size(model%lines) > 0 .or. &
-        model%setup%impactor%is_present .or. model%setup%has_variable_sections()) then
+    self%unknowns = count(.not. model%plate%constraints%fixed)
+    if (.not. allocated(model%lumped) .or. model%plate%map%layered .or. size(model%loads%lines) > 0 .or. &
+        model%plate%setup%impactor%is_present .or. model%plate%setup%has_variable_sections()) then
       call fail(error, exit_deck, 'Verlet steps require &mesh mass=''lumped'' and a plate under pressure alone.')
       return
     end if
@@ -79,7 +79,7 @@ contains
       call find_accelerations(self, model)
       motion%velocity = motion%velocity + self%step/2*motion%acceleration
       call record_energies(self, model)
-      now%deflection = model%deflection(motion%displacement)
+      now%impact%deflection = model%plate%deflection(motion%displacement)
     end associate
   end subroutine advance
 
@@ -92,15 +92,15 @@ contains
     associate (now => self%now, motion => self%now%motion)
       call model%internal(now%plies%stiffness, motion%displacement, motion%internal, now%ledger%strain)
       motion%acceleration = -motion%internal
-      if (allocated(model%pressure)) motion%acceleration = motion%acceleration &
-        + model%setup%pressure_factor(now%time, now%load_factor)*model%pressure
-      do i = 1, model%distribution%owned
+      if (allocated(model%loads%pressure)) motion%acceleration = motion%acceleration &
+        + model%plate%setup%pressure_factor(now%time, now%load_factor)*model%loads%pressure
+      do i = 1, model%plate%distribution%owned
         associate (mass => model%lumped(:, i), value => motion%acceleration(:, i))
           value = value/[mass(1), mass(1), mass(1), mass(3), mass(3)]
-          where (model%fixed(:, model%distribution%points(i))) value = 0
+          where (model%plate%constraints%fixed(:, model%plate%distribution%points(i))) value = 0
         end associate
       end do
-      call model%halo%update(motion%acceleration)
+      call model%plate%halo%update(motion%acceleration)
     end associate
   end subroutine find_accelerations
 
@@ -109,14 +109,14 @@ contains
     class(verlet_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
-    associate (motion => self%now%motion, ledger => self%now%ledger, owned => model%distribution%owned)
+    associate (motion => self%now%motion, ledger => self%now%ledger, owned => model%plate%distribution%owned)
       call model%inertia(motion%velocity, motion%momentum)
-      call model%communicator%sum(ledger%strain)
-      ledger%strain = ledger%strain*model%mesh%multiplicity
-      ledger%kinetic = model%mesh%multiplicity/2*total_of(model%communicator, &
+      call model%plate%communicator%sum(ledger%strain)
+      ledger%strain = ledger%strain*model%plate%mesh%multiplicity
+      ledger%kinetic = model%plate%mesh%multiplicity/2*total_of(model%plate%communicator, &
                                                           sum(motion%velocity(:, :owned)*motion%momentum(:, :owned), 1))
-      ledger%external_work = model%mesh%multiplicity*total_of( &
-                             model%communicator, sum(motion%displacement(:, :owned)*model%pressure(:, :owned), 1))
+      ledger%external_work = model%plate%mesh%multiplicity*total_of( &
+        model%plate%communicator, sum(motion%displacement(:, :owned)*model%loads%pressure(:, :owned), 1))
       call ledger%note_largest()
     end associate
   end subroutine record_energies
@@ -173,7 +173,7 @@ contains
     type(model_t), intent(in) :: model
     type(line_t), allocatable :: lines(:)
 
-    lines = [line_t('Model: '//counted(to_text(model%mesh%elements()), 'element')//'.')]
+    lines = [line_t('Model: '//counted(to_text(model%plate%mesh%elements()), 'element')//'.')]
   end function model_sentences
 
   !> The method as the subject of a sentence.

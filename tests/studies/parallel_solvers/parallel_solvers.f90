@@ -41,7 +41,8 @@ program parallel_solvers
   if (allocated(error)) error stop 'There is no such model.'
   ! PETSc reports its errors, as without Implam's own handler.
   call PetscPopErrorHandler(ierr)
-  call number_equations(model%mesh, model%distribution, model%fixed, numbering, model%images)
+  call number_equations(model%plate%mesh, model%plate%distribution, model%plate%constraints%fixed, numbering, &
+                        model%plate%constraints%images)
   call assemble()
   call set_up()
   call measure()
@@ -106,9 +107,9 @@ contains
                                 numbering%columns, error)
     end if
     call PetscOptionsGetReal(PETSC_NULL_OPTIONS, '', '-study_step', step, given, ierr)
-    allocate (diagonal(5, size(model%distribution%points)), source=0.0_wp)
+    allocate (diagonal(5, size(model%plate%distribution%points)), source=0.0_wp)
     allocate (still, source=diagonal)
-    call assemble_elements(model, model%elements%stiffness, numbering, still, 1.0_wp, &
+    call assemble_elements(model, model%plate%elements%stiffness, numbering, still, 1.0_wp, &
                            merge(4/step**2, 0.0_wp, given), solver, diagonal)
     call solver%matrix%finish_assembly(error)
     if (allocated(error)) error stop 'The matrix was not assembled.'

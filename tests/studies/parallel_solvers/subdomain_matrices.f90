@@ -89,7 +89,7 @@ contains
 
     do row = 1, numbering%rows
       call numbering%place_of(numbering%first_row + row - 1, point, component)
-      associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(point))))
+      associate (place => model%plate%place_of(point))
         motion = 0
         select case (number)
         case (:3)

@@ -60,10 +60,10 @@ contains
     real(wp), intent(in) :: largest(2)
     integer :: i, k
 
-    associate (points => self%model%distribution%points)
+    associate (points => self%model%plate%distribution%points)
       do i = 1, size(points)
         do k = 1, 5
-          if (.not. self%model%fixed(k, points(i))) &
+          if (.not. self%model%plate%constraints%fixed(k, points(i))) &
             self%now%motion%velocity(k, i) = largest(merge(1, 2, k <= 3))*scattered(5*points(i) + k)
         end do
       end do
@@ -98,7 +98,7 @@ contains
     left = 1
     if (present(kept)) left = kept
     do i = 1, steps
-      event = self%now%time + 1.0e6_wp*self%method%longest_step(self%model, self%now)
+      event = self%now%time + 1.0e6_wp*self%method%longest_step(self%model%plate, self%now)
       if (present(end)) event = end
       call self%method%advance(self%model, event, left, self%now)
     end do

@@ -62,9 +62,9 @@ contains
     ! These tests run on one process also where there are more.
     call create_model(setup, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
     if (allocated(error)) error stop 'no model'
-    self%model%pressure = 0
+    self%model%loads%pressure = 0
     self%state = new_state(self%model)
-    self%stiffness = self%model%elements%stiffness
+    self%stiffness = self%model%plate%elements%stiffness
     self%equilibrium%tolerance = 1.0e-9_wp
     call self%operator%create(self%model, factorization_mumps, error)
     if (allocated(error)) error stop 'no operator'
@@ -76,7 +76,7 @@ contains
     integer, intent(in) :: columns(2), rows(2)
     real(wp), intent(in) :: radius
 
-    call release_cells(self%model, self%state%interfaces%contact, columns, rows, radius)
+    call release_cells(self%model%plate, self%state%interfaces%contact, columns, rows, radius)
   end subroutine release
 
   !> Adds a force along a line of nodes across the strip.
@@ -92,13 +92,13 @@ contains
     logical, intent(in) :: lower
     integer :: j, point
 
-    associate (mesh => self%model%mesh, share => self%model%distribution)
+    associate (mesh => self%model%plate%mesh, share => self%model%plate%distribution)
       do j = 0, 2
         associate (node => mesh%node_at(line, j))
           point = mesh%first_point(node)
           if (lower) point = mesh%lower_point(node, 1)
         end associate
-        associate (load => self%model%pressure(component, share%local(point)))
+        associate (load => self%model%loads%pressure(component, share%local(point)))
           load = load + force*merge(4, 1, j == 1)/6
         end associate
       end do
@@ -112,12 +112,12 @@ contains
     integer :: node, upper, lower
 
     associate (model => self%model)
-      do node = 1, model%mesh%nodes()
-        upper = model%distribution%local(model%mesh%first_point(node))
+      do node = 1, model%plate%mesh%nodes()
+        upper = model%plate%distribution%local(model%plate%mesh%first_point(node))
         if (.not. abs(model%patch%weights(upper)) > 0) cycle
-        lower = model%distribution%local(model%mesh%lower_point(node, 1))
-        model%pressure(3, upper) = force/model%mesh%multiplicity*model%patch%weights(upper)
-        model%pressure(3, lower) = model%pressure(3, upper)/2
+        lower = model%plate%distribution%local(model%plate%mesh%lower_point(node, 1))
+        model%loads%pressure(3, upper) = force/model%plate%mesh%multiplicity*model%patch%weights(upper)
+        model%loads%pressure(3, lower) = model%loads%pressure(3, upper)/2
       end do
     end associate
   end subroutine coupling
@@ -131,10 +131,11 @@ contains
     integer :: e, column, row
 
     associate (model => self%model)
-      do e = 1, size(model%distribution%elements)
+      do e = 1, size(model%plate%distribution%elements)
         do column = columns(1), columns(2)
-          do row = 1, model%mesh%cells(2)
-            if (model%mesh%element_cell(model%distribution%elements(e)) /= model%mesh%cell_at(column, row)) cycle
+          do row = 1, model%plate%mesh%cells(2)
+            if (model%plate%mesh%element_cell(model%plate%distribution%elements(e)) &
+                /= model%plate%mesh%cell_at(column, row)) cycle
             associate (values => self%stiffness(1 + modulo(e - 1, lanes), :, 1 + (e - 1)/lanes))
               values = factor*values
             end associate
@@ -157,7 +158,7 @@ contains
     rest%plies%stiffness = self%stiffness
     ! Steps take over the plies' data if the deck has ply failure; here there is none.
     self%state%plies%stiffness = self%stiffness
-    problem = new_static_step(self%model, 1.0_wp, 1.0_wp)
+    problem = new_static_step(self%model%plate, 1.0_wp, 1.0_wp)
     call solve_step(problem, self%model, self%equilibrium, self%operator, rest, self%state, converged, error)
     if (allocated(error) .or. .not. converged) error stop 'no equilibrium'
   end subroutine equilibrate
@@ -166,7 +167,7 @@ contains
   real(wp) function energy(self)
     class(cracked_plate_t), intent(in) :: self
 
-    energy = self%state%ledger%strain/self%model%mesh%multiplicity
+    energy = self%state%ledger%strain/self%model%plate%mesh%multiplicity
   end function energy
 
   !> Energy release rates along the front.
@@ -175,7 +176,8 @@ contains
     integer, intent(in) :: method
     type(front_energy_release_t) :: front
 
-    front = release_along_front(self%model, self%stiffness, self%state%interfaces%contact, self%state%motion, 1, method)
+    front = release_along_front(self%model%plate, self%stiffness, self%state%interfaces%contact, self%state%motion, &
+                                1, method)
   end function rates
 
   !> Mean rate over the length of the smooth line of a front.

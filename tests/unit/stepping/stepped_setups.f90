@@ -86,14 +86,14 @@ contains
 
     associate (motion => stepper%now%motion)
       motion%displacement = displacement
-      call model%internal(model%elements%stiffness, displacement, motion%internal, energy)
+      call model%internal(model%plate%elements%stiffness, displacement, motion%internal, energy)
       call factor(model, 0*displacement, 0.0_wp, 1.0_wp, mass, error)
       if (allocated(error)) return
-      call mass%correct(model, -motion%internal, motion%acceleration, error)
+      call mass%correct(model%plate, -motion%internal, motion%acceleration, error)
       call mass%solver%release()
       call model%inertia(motion%acceleration, motion%inertia)
     end associate
-    stepper%now%ledger%strain = energy*model%mesh%multiplicity
+    stepper%now%ledger%strain = energy*model%plate%mesh%multiplicity
     stepper%now%ledger%initial = stepper%now%ledger%strain
   end subroutine release_from
 end module stepped_setups

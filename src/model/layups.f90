@@ -1,0 +1,95 @@
+!> Plies of the plate: its laminates, and the plies of each element.
+module layups
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
+  use element_batches, only: batch_of, lane_of, lanes
+  use free_strains, only: free_resultants
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use mean_stiffnesses, only: in_bending
+  use ply_stacks, only: ply_stack_t
+  use setups, only: setup_t
+  use stacking, only: section_of, section_t
+  implicit none
+  private
+  public :: layup_t
+
+  !> Laminates and stacks of plies.
+  type :: layup_t
+    !> Number of plies, those of doublers included
+    integer :: plies = 0
+    !> Thickness of the laminate
+    real(wp) :: thickness = 0
+    !> The different laminates of the plate, the skin's first
+    type(ply_stack_t), allocatable :: laminates(:)
+    !> Section of the full laminate, and the same with the bending moduli of plies with E1c
+    type(section_t) :: section, bending_section
+    !> The different stacks of elements, one for each layer of the mesh
+    type(ply_stack_t), allocatable :: stacks(:)
+    !> Stack of each of this rank's elements, (elements)
+    integer, allocatable :: stack(:)
+    !> Resultants of the thermal strains of undamaged plies, and their energy per area, (lanes, 7, batches); allocated
+    !> only if they are modelled
+    real(wp), allocatable :: free(:, :, :)
+  contains
+    procedure :: find_laminates
+    procedure :: assign_stacks
+  end type layup_t
+
+contains
+
+  !> Finds the different laminates of the plate, and that of each cell.
+  pure subroutine find_laminates(self, setup, laminate_of)
+    class(layup_t), intent(inout) :: self
+    type(setup_t), intent(in) :: setup
+    !> Number of that of each cell, columns first
+    integer, allocatable, intent(out) :: laminate_of(:)
+    type(cell_line_t) :: columns, rows
+    integer :: i, j
+
+    self%plies = setup%plies()
+    self%thickness = sum(setup%laminate%thickness)
+    columns = cells_along(setup%plate, setup%mesh, 1)
+    rows = cells_along(setup%plate, setup%mesh, 2)
+    associate (x => columns%middles(), y => rows%middles())
+      call setup%zones%find_stacks(setup%laminate, setup%materials, &
+                                   reshape([(([x(i), y(j)], i=1, size(x)), j=1, size(y))], [2, size(x)*size(y)]), &
+                                   self%laminates, laminate_of)
+    end associate
+    if (setup%thermal%is_present) then
+      do i = 1, size(self%laminates)
+        call self%laminates(i)%set_thermal_strains(setup%materials, setup%thermal%temperature_change)
+      end do
+    end if
+    associate (skin => self%laminates(1)%plies)
+      self%section = section_of(skin, setup%laminate%shear_correction)
+      self%bending_section = section_of(in_bending(skin), setup%laminate%shear_correction)
+    end associate
+  end subroutine find_laminates
+
+  !> Finds the stack of each layer of the mesh and of each of this rank's elements.
+  pure subroutine assign_stacks(self, mesh, elements, has_free_strains)
+    class(layup_t), intent(inout) :: self
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Elements of this rank
+    integer, intent(in) :: elements(:)
+    !> True: thermal strains are modelled
+    logical, intent(in) :: has_free_strains
+    integer :: i
+
+    allocate (self%stacks(size(mesh%layers)))
+    do i = 1, size(self%stacks)
+      associate (layer => mesh%layers(i))
+        self%stacks(i) = self%laminates(layer%laminate)%layer(layer%plies(1), layer%plies(2))
+      end associate
+    end do
+    self%stack = mesh%element_layer(elements)
+    if (.not. has_free_strains) return
+    allocate (self%free(lanes, 7, (size(elements) + lanes - 1)/lanes), source=0.0_wp)
+    do i = 1, size(elements)
+      associate (plies => self%stacks(self%stack(i))%plies)
+        self%free(lane_of(i), :, batch_of(i)) = free_resultants(plies, plies%elasticity)
+      end associate
+    end do
+  end subroutine assign_stacks
+end module layups
