@@ -76,8 +76,8 @@ contains
       end if
       if (model%plate%setup%impactor%is_present) then
         ledger%indentation = now%impact%indentation%work
-        if (.not. model%plate%setup%impactor%travel > 0) ledger%impactor = method%impact%energy(model, &
-                                                                                                method%steps%now, now)
+        if (.not. model%plate%setup%impactor%travel > 0) &
+          ledger%impactor = method%impact%energy(model, method%steps%now, now)
       end if
       call ledger%note_largest()
     end associate

@@ -39,8 +39,7 @@ module central_differences
   !> Ratio of the present to the allowed frequency below which the latter is reduced, and of the present to the longest
   !> step below which steps are lengthened: steps are up to a fifth shorter than necessary.
   real(wp), parameter :: lengthening_ratio = 0.8_wp
-  !> Fraction of a step by which a sum of steps may miss an event: the sum of n steps has a round-off of up to n**2/1e16
-  !> steps.
+  !> Fraction of a step by which a sum of n steps, with a round-off of up to n**2/1e16 steps, may miss an event.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
   !> Data of the method that are not part of the state, many because each of nodes, lines and impactor has a rule.
@@ -105,10 +104,9 @@ contains
     self%impact = create_impactor_steps(model, now%impact%impactor%velocity)
     self%impact%patch%offset = merge(-now%impact%patch%touched_at, now%impact%patch%offset, allocated(model%nose))
     call self%impact%patch%gather(model%plate, self%inertia%inverse_of_images())
-    allocate (self%force(5, size(model%plate%distribution%points)), &
-              self%motion(5, size(model%plate%distribution%points)), &
-              self%field(5, model%plate%borders%columns), self%strain(lanes, model%plate%elements%batches), &
-              source=0.0_wp)
+    allocate (self%force(5, size(model%plate%distribution%points)), self%field(5, model%plate%borders%columns), &
+              self%strain(lanes, model%plate%elements%batches), source=0.0_wp)
+    self%motion = self%force
     self%initial_work = now%ledger%external_work
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
@@ -156,7 +154,7 @@ contains
     real(wp), intent(in) :: event, kept
     type(state_t), intent(inout) :: now
     real(wp), allocatable :: rates(:, :)
-    real(wp) :: step, longest, load_factors(2)
+    real(wp) :: step, longest, factors(2)
 
     step = self%steps%now
     longest = self%longest_step(model%plate, now)
@@ -164,35 +162,34 @@ contains
       step = commensurate_step(model%plate%setup%loading%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now, kept=kept)
     call prepare(self, model%plate)
-    load_factors = [now%load_factor, model%plate%setup%load_factor_at(now%time + step)]
-    call self%lines%find_rates(model, self%steps, load_factors(2), model%plate%setup%offset_left(now%time + step), &
-                               self%motion)
-    associate (u => now%motion%displacement, v => now%motion%velocity)
-      call model%plate%profile%enter('nodes')
+    factors = [now%load_factor, model%plate%setup%load_factor_at(now%time + step)]
+    associate (plate => model%plate, u => now%motion%displacement, v => now%motion%velocity)
+      call self%lines%find_rates(model, self%steps, factors(2), plate%setup%offset_left(now%time + step), self%motion)
+      call plate%profile%enter('nodes')
       if (allocated(self%inertia%springs)) then
         call self%inertia%add_spring_forces(step, u, v, self%force)
         rates = v(:, self%inertia%sprung)
       end if
-      call change_length(self, model%plate, v, -1)
-      call move_single(self, model%plate, u, v)
-      call move_stacks(self%nodal_steps_t, model%plate, now%interfaces%cohesive, u, v)
+      call change_length(self, plate, v, -1)
+      call move_single(self, plate, u, v)
+      call move_stacks(self%nodal_steps_t, plate, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia, self%steps, rates, v)
-      call self%rigs%circles%constrain(model%plate, self%steps, u(3, :), v(3, :))
+      call self%rigs%circles%constrain(plate, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
-      call change_length(self, model%plate, v, 1)
-      call self%onsets%find(model%plate, now%step, self%stacks, now%interfaces%cohesive, u)
-      call model%plate%profile%leave()
-      call model%plate%halo%update(u)
+      call change_length(self, plate, v, 1)
+      call self%onsets%find(plate, now%step, self%stacks, now%interfaces%cohesive, u)
+      call plate%profile%leave()
+      call plate%halo%update(u)
     end associate
     now%time = now%time + step
     if (abs(now%time - event) <= event_tolerance*step) now%time = event
     now%step = now%step + 1
-    now%load_factor = load_factors(2)
+    now%load_factor = factors(2)
     call self%impact%move(model, self%steps, now)
     call self%find_forces(model, now)
-    call add_loads(self, model, now, load_factors)
+    call add_loads(self, model, now, factors)
   end subroutine advance
 
   !> Records the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
@@ -317,7 +314,6 @@ contains
   subroutine record_failures(self, model, now)
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state; receives the energy in its ledger
     type(state_t), intent(inout) :: now
     real(wp) :: lost
 
@@ -366,14 +362,11 @@ contains
     call archive%item('explicit/initial_work', self%initial_work)
     call archive%item('explicit/frequency', self%stiffened)
     self%stiffened = max(self%stiffened, self%frequency)
-    associate (owned => model%plate%distribution%points(:model%plate%distribution%owned), &
-               points => model%plate%mesh%points())
-      call archive%field('explicit/forces', owned, points, self%force, motion_field)
-      call self%rigs%visit(archive, owned, points)
-      call self%impact%visit(archive)
-      if (size(model%loads%lines) > 0 .or. allocated(model%loads%pressure) &
-          .or. model%plate%setup%initial%is_inherited) call self%lines%visit(archive, owned, points)
-      if (model%plate%map%layered) call self%stacks%history%visit(archive, owned, points)
-    end associate
+    call model%plate%visit_points(archive, 'explicit/forces', self%force, motion_field)
+    call self%rigs%visit(archive, model%plate)
+    call self%impact%visit(archive)
+    if (size(model%loads%lines) > 0 .or. allocated(model%loads%pressure) .or. model%plate%setup%initial%is_inherited) &
+      call self%lines%visit(archive, model%plate)
+    if (model%plate%map%layered) call self%stacks%history%visit(archive, model%plate)
   end subroutine visit
 end module central_differences

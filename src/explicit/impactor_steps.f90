@@ -113,12 +113,11 @@ contains
       now%impact%patch_mean = -alpha
       return
     end if
-    associate (impactor => now%impact%impactor, parameters => model%plate%setup%impactor)
+    associate (impactor => now%impact%impactor, parameters => model%plate%setup%impactor, &
+               ramp_time => model%plate%setup%loading%ramp_time)
       before = now%impact%force
       if (parameters%travel > 0) then
-        change = parameters%travel*smooth_ramp(now%time/model%plate%setup%loading%ramp_time, &
-                                               parameters%rise/model%plate%setup%loading%ramp_time, 0) &
-                                               - impactor%displacement
+        change = parameters%travel*smooth_ramp(now%time/ramp_time, parameters%rise/ramp_time, 0) - impactor%displacement
         self%velocity = change/steps%now
       else
         call accelerate(self, model%plate, steps, before)

@@ -120,7 +120,7 @@ contains
     square = mass(3)/mass(1) - (mass(2)/mass(1))**2
   end function laminate_radius_square
 
-  !> Scaled masses of the sections of a model: the factor times I0, I1, I2, and the added rotary inertia. The sum over
+  !> Scaled masses of the sections of a plate: the factor times I0, I1, I2, and the added rotary inertia. The sum over
   !> layers is the mass of the joined layers, so that the insertion of layers does not change the kinetic energy.
   function sections(self, plate) result(masses)
     class(inertia_scaling_t), intent(in) :: self
@@ -140,7 +140,7 @@ contains
     end do
   end function sections
 
-  !> Scaled masses of the beams of a model, by the factors of their elements.
+  !> Scaled masses of the beams of a plate, by the factors of their elements.
   function beams(self, plate) result(masses)
     class(inertia_scaling_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate

@@ -101,11 +101,10 @@ contains
   end subroutine damp
 
   !> Writes or reads the history.
-  subroutine visit(self, archive, owned, points)
+  subroutine visit(self, archive, plate)
     class(jump_history_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    !> Numbers of this rank's points in the mesh, and number of points of the mesh
-    integer, intent(in) :: owned(:), points
+    type(composite_plate_t), intent(in) :: plate
     real(wp) :: values(19, size(self%work))
 
     values(1:3, :) = self%forces
@@ -115,7 +114,7 @@ contains
     values(12:14, :) = self%rubbing
     values(15, :) = self%work
     values(16:19, :) = self%sticking
-    call archive%field('explicit/interfaces', owned, points, values, vector_fields([1, 4, 7, 16, 18]))
+    call plate%visit_points(archive, 'explicit/interfaces', values, vector_fields([1, 4, 7, 16, 18]))
     self%forces = values(1:3, :)
     self%change = values(4:6, :)
     self%earlier = values(7:9, :)
@@ -131,16 +130,13 @@ contains
     type(cohesive_interfaces_t), intent(in) :: cohesive
     type(nodal_inertia_t), intent(in) :: inertia
     type(interface_stacks_t) :: self
-    logical :: is_dependent(model%plate%distribution%owned)
     integer :: i, points
 
     associate (above => model%plate%map%above, owned => model%plate%distribution%owned)
       points = size(model%plate%distribution%points)
-      is_dependent = .false.
-      is_dependent(inertia%dependents) = .true.
-      self%single = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
+      self%single = pack([(i, i=1, owned)], .not. inertia%is_dependent(:owned) .and. above(:owned) == 0 .and. &
                          [(.not. has_layer_below(above, i), i=1, owned)])
-      self%first = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
+      self%first = pack([(i, i=1, owned)], .not. inertia%is_dependent(:owned) .and. above(:owned) == 0 .and. &
                         [(has_layer_below(above, i), i=1, owned)])
       allocate (self%layers(size(self%first)), self%damaged(size(self%first)))
       do i = 1, size(self%first)

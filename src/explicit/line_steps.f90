@@ -10,6 +10,7 @@ module line_steps
   use exact_sums, only: exact_sum_t
   use field_mappings, only: vector_fields
   use kinds, only: wp
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   use rank_totals, only: totals_of
@@ -64,19 +65,16 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     type(line_steps_t) :: self
     type(prescribed_dof_t), allocatable :: dofs(:)
-    logical :: is_dependent(size(model%plate%distribution%points))
     integer :: line, node, p
 
-    is_dependent = .false.
-    is_dependent(inertia%dependents) = .true.
-    allocate (dofs(0), self%work(size(is_dependent)), self%first(size(is_dependent) + 1))
+    allocate (dofs(0), self%work(size(inertia%is_dependent)), self%first(size(inertia%is_dependent) + 1))
     self%work = 0
     do line = 1, size(model%loads%lines)
       associate (its => model%loads%lines(line))
         if (.not. its%load%prescribed) cycle
         do node = 1, size(its%weight)
           p = its%point(its%first(node))
-          if (is_dependent(p) .or. inertia%constrained(its%load%component, p)) cycle
+          if (inertia%is_dependent(p) .or. inertia%constrained(its%load%component, p)) cycle
           dofs = [dofs, prescribed_dof_t(point=p, line=line, component=its%load%component, &
                               height=merge(its%height(node), 0.0_wp, its%load%component <= 2))]
         end do
@@ -309,11 +307,10 @@ contains
   end function totals
 
   !> Saves or loads reactions, changes and work.
-  subroutine visit(self, archive, owned, points)
+  subroutine visit(self, archive, plate)
     class(line_steps_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    !> Points of the mesh that this rank owns, and all points
-    integer, intent(in) :: owned(:), points
+    type(composite_plate_t), intent(in) :: plate
     real(wp) :: fields(16, size(self%work))
     integer :: i
 
@@ -326,7 +323,7 @@ contains
         fields(dof%component + 11, dof%point) = dof%offset
       end associate
     end do
-    call archive%field('explicit/lines', owned, points, fields, vector_fields([1, 4, 6, 9, 12, 15]))
+    call plate%visit_points(archive, 'explicit/lines', fields, vector_fields([1, 4, 6, 9, 12, 15]))
     self%work = fields(11, :)
     if (archive%loading) call add_offset(self, fields(12:, :))
     do i = 1, size(self%dofs)

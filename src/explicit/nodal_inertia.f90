@@ -33,6 +33,8 @@ module nodal_inertia
     real(wp), allocatable :: inverse(:, :)
     !> Dependent points and their masters, (dependents)
     integer, allocatable :: dependents(:), masters(:)
+    !> True for dependent points, (points)
+    logical, allocatable :: is_dependent(:)
     !> Signs of their motion, (5, dependents)
     real(wp), allocatable :: signs(:, :)
   contains
@@ -77,7 +79,8 @@ contains
     call find_masters(plate%mesh, master, signs, constrained, plate%constraints%images)
     associate (partition => plate%distribution)
       self%constrained = constrained(:, partition%points)
-      self%dependents = pack([(i, i=1, partition%owned)], master(partition%points(:partition%owned)) > 0)
+      self%is_dependent = master(partition%points) > 0 .and. [(i, i=1, size(partition%points))] <= partition%owned
+      self%dependents = pack([(i, i=1, size(partition%points))], self%is_dependent)
       self%masters = partition%local(master(partition%points(self%dependents)))
       self%signs = signs(:, partition%points(self%dependents))
     end associate

@@ -67,7 +67,7 @@ module rig_steps
 
 contains
 
-  !> Support points of the circular frames of a model.
+  !> Support points of the circular frames of a plate.
   function create_circle_frames(plate) result(self)
     type(composite_plate_t), intent(in) :: plate
     type(circle_frames_t) :: self
@@ -296,18 +296,17 @@ contains
   end subroutine record_springs
 
   !> Saves or loads.
-  subroutine visit(self, archive, owned, points)
+  subroutine visit(self, archive, plate)
     class(rig_steps_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    !> Points of the mesh that this rank owns, and all points
-    integer, intent(in) :: owned(:), points
+    type(composite_plate_t), intent(in) :: plate
     real(wp) :: fields(4, size(self%reaction))
 
     fields(1, :) = self%reaction
     fields(2, :) = self%approach
     fields(3, :) = self%frame_loss
     fields(4, :) = self%step_loss
-    call archive%field('explicit/frames', owned, points, fields, area_field)
+    call plate%visit_points(archive, 'explicit/frames', fields, area_field)
     self%reaction = fields(1, :)
     self%approach = fields(2, :)
     self%frame_loss = fields(3, :)
