@@ -122,8 +122,9 @@ contains
         direction = d
       end do
       if (largest < onset_share) return
-      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), stacks%history%forces(:, p)/stacks%area(p), &
-                      taken(self, of_jumps, near(behind, direction)), strength, opening)
+      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), &
+                      stacks%history%forces(:, p)/stacks%area(p), taken(self, of_jumps, near(behind, direction)), &
+                      strength, opening)
       if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
         call stacks%begin_softening(plate, cohesive, p, [strength, opening], u)
     end associate
