@@ -16,7 +16,7 @@ FILES = ("bin/implam", "share/man/man1/implam.1", "share/bash-completion/complet
          "share/doc/implam/LICENSE", "share/doc/implam/CITATION.cff")
 PROJECT = """cmake_minimum_required(VERSION 3.25)
 project(user LANGUAGES NONE)
-find_package(Implam 0.1 REQUIRED)
+find_package(Implam 0.2 REQUIRED)
 get_target_property(program Implam::implam IMPORTED_LOCATION_RELEASE)
 file(WRITE "${CMAKE_BINARY_DIR}/found" "${program}\\n${Implam_DECKS}")
 """

@@ -345,7 +345,7 @@ def _mesh(group: h5py.Group) -> Mesh:
     first, last = (_finite(group[f"cells/{name}"][()].ravel(), name, len(corners)) for name in ("first_ply",
                                                                                                  "last_ply"))
     # The layer of a doubler that may come off lies above or below the laminate and has none of its plies.
-    if first.min() < 0 or np.any(last < first - 1):
+    if first.min() < 0 or np.any(last < first - 1) or np.any((first < 1) & (last > 0)):
         raise _MemberError("first_ply and last_ply are not numbers of plies")
     starter = group["cells/starter_above"][()].ravel() if "starter_above" in group["cells"] else np.zeros(len(first))
     return Mesh(corners, first, last, _finite(starter, "starter_above", len(first)) > 0)

@@ -421,7 +421,7 @@ class RoundTripTest(ExportTest):
             self.keep(text.replace("&static /", f"&delamination doubler='pad' G_c=1 {starter} /\n&static /"))
             code, printed = self.run_command(to_nastran, self.path)
             self.assertEqual(code, 0, printed)
-            self.assertIn("the bond of doublers is written as rigid", printed)
+            self.assertIn("the bond of doublers on the back is written as rigid", printed)
             panel = read_panel(self.path)
             found = [tuple(panel.section(stack).numbers for stack in stacks) for stacks in panel.stacks.values()]
             self.assertEqual({numbers for numbers in found if any(9 in part for part in numbers)}, parts)

@@ -124,7 +124,7 @@ class RegressTest(unittest.TestCase):
         names = [entry.get("column") or entry["quantity"] for entry in content]
         for name in ("peak_force", "peak_force_time", "max_deflection", "matrix_cracks", "energy_error"):
             self.assertIn(name, names)
-        self.assertIn("# Accepted from a run of Implam 0.1.", self.expect.read_text())
+        self.assertRegex(self.expect.read_text(), r"# Accepted from a run of Implam \d")
         code, said = self.regress()
         self.assertEqual((code, said.count("FAIL")), (0, 0), said)
         deck = self.decks / "ply_damage.nml"
