@@ -136,7 +136,7 @@ class SweepTest(unittest.TestCase):
                     self.assertEqual(found, summary[figure.member], name)
             self.assertAlmostEqual(float(row["impact_energy"]) / float(row["energy"]), 1, delta=1e-9)
             self.assertEqual(float(row["delaminated_area"]), history["delaminated_area"][-1])
-            self.assertEqual((row["exit_code"], row["version"][:4]), ("0", "0.1."))
+            self.assertEqual((row["exit_code"], row["version"].split(".")[0]), ("0", "0"))
         self.assertGreater(float(rows[0]["rebound_velocity"]), 0.5)
         with h5py.File(self.output / "table.h5") as file:
             self.assertEqual(file["table/peak_force"][()].tolist(), [float(row["peak_force"]) for row in rows])
