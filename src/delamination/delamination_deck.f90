@@ -6,7 +6,7 @@ module delamination_deck
   use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use doubler_bonds, only: check_bonds, is_bond, is_front_bond, new_bond, weaker_beside
+  use doubler_bonds, only: check_bonds, is_bond, new_bond, weaker_beside
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
                                      growth_one_per_step, growth_by_strength, &
@@ -139,9 +139,8 @@ contains
 
       do place = 1, settings%groups_named(group)
         if (.not. is_bond(settings, place)) cycle
-        if (is_front_bond(settings, place, zones) .neqv. on_front) cycle
         call new_bond(settings, place, size(strengths, 2), zones, next)
-        call add(next)
+        if (next%is_on_front() .eqv. on_front) call add(next)
       end do
     end subroutine add_bonds
 

@@ -12,7 +12,7 @@ module doubler_bonds
   use zone_deck, only: doubler_group
   implicit none
   private
-  public :: check_bonds, is_bond, is_front_bond, names_of_doublers, new_bond, weaker_beside
+  public :: check_bonds, is_bond, names_of_doublers, new_bond, weaker_beside
 
   !> Name of the key.
   character(len=*), parameter, public :: key_bond = 'doubler'
@@ -46,7 +46,7 @@ contains
 
     names = settings%texts_of(group, key_bond, place)
     bond%group = place
-    bond%below_ply = merge(0, plies, is_front_bond(settings, place, zones))
+    bond%below_ply = plies
     allocate (bond%doublers(size(names)), source=0)
     allocate (bond%beside(0))
     if (.not. allocated(zones%doublers)) return
@@ -60,26 +60,11 @@ contains
           bond%beside = [bond%beside, plies + 1 + plies_of(zones, k - 1)]
         end if
         zones%doublers(k)%is_cohesive = .true.
+        ! The first one decides; others on another face are refused.
+        if (i == 1 .and. zones%doublers(k)%face == front_face) bond%below_ply = 0
       end do
     end do
   end subroutine new_bond
-
-  !> True for a group of the bond of doublers of which the first is on the struck face.
-  pure logical function is_front_bond(settings, place, zones)
-    type(settings_t), intent(in) :: settings
-    !> Index of the group
-    integer, intent(in) :: place
-    type(ply_zones_t), intent(in) :: zones
-    type(line_t), allocatable :: names(:)
-    integer :: k
-
-    is_front_bond = .false.
-    if (.not. (is_bond(settings, place) .and. allocated(zones%doublers))) return
-    names = settings%texts_of(group, key_bond, place)
-    do k = 1, size(zones%doublers)
-      if (zones%doublers(k)%name == names(1)%text) is_front_bond = zones%doublers(k)%face == front_face
-    end do
-  end function is_front_bond
 
   !> Number of plies of the first doublers.
   pure integer function plies_of(zones, doublers) result(plies)

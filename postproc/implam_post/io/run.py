@@ -31,7 +31,8 @@ class Field:
     """A field at one time: a value, or a row of components, at each place of the modelled part of the plate.
 
     Places are points or the centres of cells, (places, 3), z from the struck face to the back. `first_ply` is the first
-    ply of each cell; the interface on top of the cell is below ply `first_ply - 1`. It is None for points.
+    ply of each cell; the interface on top of the cell is below ply `first_ply - 1`, 0 for the bond of a
+    doubler to the struck face. It is None for points.
     """
 
     name: str
