@@ -53,8 +53,8 @@ def plan_of(snapshot: Snapshot) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         for name, mode in MODES.items():
             np.add.at(failed[name], place[of_ply], flags[of_ply] & mode > 0)
     plies = len(mesh.plies)
-    values = (delaminated, np.where(np.isfinite(top), top, -1), failed["any"] / plies, failed["matrix cracking"] / plies,
-              failed["fibre failure"] / plies)
+    values = (delaminated, np.where(np.isfinite(top), top, -1),
+              *(failed[name] / plies for name in ("any", "matrix cracking", "fibre failure")))
     return mesh.corners[first], dict(zip(_FIELDS, values, strict=True))
 
 
