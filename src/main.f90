@@ -14,7 +14,6 @@ contains
   !> Ends the process with an exit code, which `stop` would announce on the terminal.
   subroutine quit(code)
     use, intrinsic :: iso_c_binding, only: c_int
-    !> The exit code
     integer, intent(in) :: code
     interface
       !> The C library's way out.
@@ -32,7 +31,6 @@ contains
   subroutine leave_at_once(code)
     use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr
     use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
-    !> The exit code
     integer, intent(in) :: code
     interface
       !> C library: hands buffered output to the operating system.

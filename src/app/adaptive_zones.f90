@@ -24,7 +24,6 @@ contains
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
     class(stepper_t), intent(inout) :: stepper
-    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Receives a note of new layers
     type(log_t), intent(inout) :: log

@@ -33,7 +33,6 @@ contains
 
   !> Commands to which an option applies; empty: all. Options that are not in the table are of PETSc, its last row.
   pure function commands_with(option) result(commands)
-    !> The option
     character(len=*), intent(in) :: option
     character(len=:), allocatable :: commands
     type(line_t), allocatable :: terms(:)

@@ -31,7 +31,6 @@ contains
   subroutine compute(command, communicator, code, error)
     type(command_t), intent(in) :: command
     type(communicator_t), intent(inout) :: communicator
-    !> Exit code
     integer, intent(inout) :: code
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error
@@ -66,7 +65,6 @@ contains
     type(deck_t), intent(out) :: deck
     !> Path of the checkpoint from which the run continues; empty: it begins
     character(len=:), allocatable, intent(out) :: checkpoint
-    !> Exit code
     integer, intent(inout) :: code
     !> Set if a checkpoint cannot be read or the deck cannot be verified
     type(error_t), allocatable, intent(out) :: error
@@ -101,7 +99,6 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Errors and warnings so far
     type(problems_t), intent(inout) :: problems
-    !> Exit code
     integer, intent(inout) :: code
 
     code = problems%exit_code()
@@ -144,7 +141,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
-    !> Exit code
     integer, intent(inout) :: code
     !> Set if a run fails
     type(error_t), allocatable, intent(out) :: error

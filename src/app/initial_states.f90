@@ -175,7 +175,6 @@ contains
   pure function covering_extents(deck, old, zone) result(extents)
     !> The deck, and that of the other run with the zones at its end
     type(deck_t), intent(in) :: deck, old
-    !> Index of the zone
     integer, intent(in) :: zone
     !> Full extents along x and y
     real(wp) :: extents(2)
@@ -198,7 +197,6 @@ contains
   pure function centre_distance(deck, old, zone) result(distance)
     !> The deck, and that of the other run with the zones at its end
     type(deck_t), intent(in) :: deck, old
-    !> Index of the zone
     integer, intent(in) :: zone
     !> Along x and y
     real(wp) :: distance(2)

@@ -44,7 +44,6 @@ contains
   !> Executes a command. Without a launcher MPI is started only for computations: commands that read or explain decks
   !> also work where MPI must not be started.
   subroutine run_program(code, close_failed)
-    !> Exit code
     integer, intent(out) :: code
     !> True: a file could not be closed, so that the finalization of the libraries, MPI included, would crash and has to
     !> be omitted
@@ -215,7 +214,6 @@ contains
   subroutine check(command, communicator, code, error)
     type(command_t), intent(in) :: command
     type(communicator_t), intent(in) :: communicator
-    !> Exit code
     integer, intent(out) :: code
     !> Set if the initial state cannot be read or is of another plate
     type(error_t), allocatable, intent(inout) :: error

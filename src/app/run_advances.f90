@@ -17,7 +17,6 @@ contains
   subroutine start_progress(progress, stepper, end)
     type(progress_t), intent(inout) :: progress
     class(stepper_t), intent(in) :: stepper
-    !> End of the run
     real(wp), intent(in) :: end
 
     call progress%start(stepper%now%time/end, stepper%done())
@@ -28,7 +27,6 @@ contains
     type(progress_t), intent(inout) :: progress
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
-    !> End of the run
     real(wp), intent(in) :: end
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: of

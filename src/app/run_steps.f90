@@ -25,7 +25,6 @@ contains
     class(stepper_t), intent(inout) :: stepper
     !> The record, updated in each step
     type(run_record_t), intent(inout) :: record
-    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Receives a note of new layers
     type(log_t), intent(inout) :: log

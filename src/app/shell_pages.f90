@@ -89,7 +89,6 @@ contains
 
   !> A line with dashes, backslashes and initial dots escaped.
   pure function escaped(line) result(safe)
-    !> The line
     character(len=*), intent(in) :: line
     !> With the escapes of roff
     character(len=:), allocatable :: safe

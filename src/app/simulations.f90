@@ -43,11 +43,9 @@ module simulations
 
   !> A run with its open files. It has many components because it owns files, clocks and timers.
   type :: simulation_t
-    !> The deck
     type(deck_t) :: deck
     !> The ranks
     type(communicator_t) :: communicator
-    !> The model
     type(model_t) :: model
     !> The time stepper, with the state
     class(stepper_t), allocatable :: stepper
@@ -61,7 +59,6 @@ module simulations
     type(provenance_t) :: provenance
     !> Force history
     type(history_file_t) :: history
-    !> Fields
     type(fields_file_t) :: fields
     !> Clocks of history, fields and checkpoints
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock

@@ -72,7 +72,6 @@ contains
 
   !> True: a summary has a member of this name and text.
   logical function holds(summary, name, content)
-    !> The summary
     character(len=*), intent(in) :: summary
     !> Name and text of the member
     character(len=*), intent(in) :: name, content
@@ -144,7 +143,6 @@ contains
 
     !> A value with its unit.
     pure function shown(value) result(words)
-      !> The value
       real(wp), intent(in) :: value
       !> Such as 2.468 kN
       character(len=:), allocatable :: words
@@ -155,7 +153,6 @@ contains
 
   !> Number of a member of the outermost object; the member has a line of its own.
   pure subroutine find_number(summary, name, value, found)
-    !> The summary
     character(len=*), intent(in) :: summary
     !> The member
     character(len=*), intent(in) :: name

@@ -88,7 +88,6 @@ contains
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
-    !> The value
     real(wp), intent(in) :: value
 
     call self%member(name, number(value))
@@ -99,7 +98,6 @@ contains
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
-    !> The values
     real(wp), intent(in) :: values(:)
     character(len=:), allocatable :: list
     integer :: i
@@ -117,7 +115,6 @@ contains
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
-    !> The value
     integer, intent(in) :: value
 
     call self%member(name, to_text(value))
@@ -128,7 +125,6 @@ contains
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
-    !> The value
     logical, intent(in) :: value
 
     call self%member(name, trim(merge('true ', 'false', value)))
@@ -139,7 +135,6 @@ contains
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
-    !> The value
     character(len=*), intent(in) :: value
 
     call self%member(name, quoted(value))
@@ -183,7 +178,6 @@ contains
 
   !> A real as JSON has it.
   pure function number(value) result(digits)
-    !> The value
     real(wp), intent(in) :: value
     !> Its digits, or null
     character(len=:), allocatable :: digits

@@ -156,7 +156,6 @@ contains
     class(log_t), intent(inout) :: self
     !> Unit of the terminal
     integer, intent(in) :: unit
-    !> The line
     character(len=*), intent(in) :: line
     integer :: ignored
 
@@ -169,7 +168,6 @@ contains
   !> Writes a line to the file. If this fails no more lines are written to the file, and the terminal is informed.
   subroutine to_file(self, line, at_once)
     class(log_t), intent(inout) :: self
-    !> The line
     character(len=*), intent(in) :: line
     !> True: the line is written at once
     logical, intent(in) :: at_once

@@ -97,7 +97,6 @@ contains
   !> Writes text as it is.
   subroutine put(self, text)
     class(output_stream_t), intent(inout) :: self
-    !> The text
     character(len=*), intent(in) :: text
     integer(c_size_t) :: written
 

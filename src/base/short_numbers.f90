@@ -14,7 +14,6 @@ contains
 
   !> A number to three digits.
   pure function short_text(value) result(digits)
-    !> The number
     real(wp), intent(in) :: value
     !> Such as 0.00345
     character(len=:), allocatable :: digits
@@ -24,7 +23,6 @@ contains
 
   !> A number rounded up to three digits, as a lower bound that can be typed.
   pure function text_at_least(value) result(digits)
-    !> The number
     real(wp), intent(in) :: value
     !> Such as 0.00346
     character(len=:), allocatable :: digits
@@ -34,7 +32,6 @@ contains
 
   !> A number rounded down to three digits, as an upper bound that can be typed.
   pure function text_at_most(value) result(digits)
-    !> The number
     real(wp), intent(in) :: value
     !> Such as 0.00345
     character(len=:), allocatable :: digits
@@ -44,7 +41,6 @@ contains
 
   !> A number to three digits.
   pure real(wp) function rounded(value, mode)
-    !> The number
     real(wp), intent(in) :: value
     !> Mode of rounding as in formats: rn to the nearest, ru up, rd down
     character(len=2), intent(in) :: mode

@@ -68,7 +68,6 @@ contains
 
   !> Shortest of the usual forms that reads back as the same number.
   pure function real_to_text(value) result(digits)
-    !> The number
     real(wp), intent(in) :: value
     !> Such as 0.25, 1500 or 2.5e-06
     character(len=:), allocatable :: digits
@@ -90,7 +89,6 @@ contains
 
   !> The same by writing and reading, for numbers near the ends of the range and those between two texts.
   pure function tried_text(value) result(digits)
-    !> The number
     real(wp), intent(in) :: value
     character(len=:), allocatable :: digits
     character(len=40) :: buffer
@@ -114,7 +112,6 @@ contains
 
   !> A number rounded for reading.
   pure function rounded_text(value, significant) result(digits)
-    !> The number
     real(wp), intent(in) :: value
     !> Significant digits, 1 to 17; four if not given
     integer, intent(in), optional :: significant
@@ -253,7 +250,6 @@ contains
   pure subroutine append(lines, line)
     !> The list
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The line
     character(len=*), intent(in) :: line
     type(line_t), allocatable :: longer(:)
     integer :: i

@@ -150,7 +150,6 @@ contains
     type(deck_t), intent(inout) :: deck
     !> End of the run, and the history's error with the step
     real(wp), intent(in) :: end, error
-    !> The step
     real(wp), intent(inout) :: step
 
     call choose_one(deck, time_group, key_step, step)
@@ -286,7 +285,6 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Group and key
     character(len=*), intent(in) :: group, key
-    !> The number
     real(wp), intent(in) :: value
 
     call deck%settings%choose(group, key, [line_t(short_text(value))])

@@ -43,7 +43,6 @@ contains
   !> Growth from the core to the border, the longest element, and the number of elements for the growth recommended.
   subroutine measure(deck, direction, growth, longest, enough)
     type(deck_t), intent(in) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> Ratio of adjacent elements, the larger of both sides
     real(wp), intent(out) :: growth

@@ -34,7 +34,6 @@ module deck_contents
     character(len=:), allocatable :: source
     !> Text of the deck, for the results and a restart
     character(len=:), allocatable :: text
-    !> The case
     type(case_t) :: case
     !> The setup to model
     type(setup_t) :: setup
@@ -46,7 +45,6 @@ module deck_contents
     logical :: has_time = .false., has_adapt = .false.
     !> Parameters of steps
     type(stepping_t) :: stepping
-    !> The linear solver
     type(linear_solver_parameters_t) :: linear_solver
     !> Parts that are written
     type(output_t) :: output

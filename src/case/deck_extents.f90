@@ -305,7 +305,6 @@ contains
 
   !> A number to four digits.
   pure real(wp) function rounded(value)
-    !> The number
     real(wp), intent(in) :: value
     character(len=12) :: digits
 

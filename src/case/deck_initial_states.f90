@@ -347,7 +347,6 @@ contains
 
   !> Name of a part of the plate.
   pure function part_name(symmetry) result(name)
-    !> The part
     integer, intent(in) :: symmetry
     !> As the deck has it
     character(len=:), allocatable :: name
@@ -364,7 +363,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> The number that stands for it
     real(wp), intent(in) :: number
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> As text
     character(len=:), allocatable :: shown

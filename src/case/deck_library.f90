@@ -90,7 +90,6 @@ contains
     !> Published material; empty: none
     character(len=*), intent(in) :: name
     character(len=*), intent(in) :: group
-    !> Index among groups of this name
     integer, intent(in) :: place
     !> Keys in effect; receive the values
     type(settings_t), intent(inout) :: settings
@@ -112,7 +111,6 @@ contains
   pure integer function decades(unit, system)
     !> Physical dimension, as the table of the deck names it
     character(len=*), intent(in) :: unit
-    !> Index of the system
     integer, intent(in) :: system
 
     select case (unit)

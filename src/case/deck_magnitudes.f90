@@ -57,7 +57,6 @@ contains
   logical function shows_unit(deck, key, place, problems) result(shows)
     type(deck_t), intent(in) :: deck
     type(key_entry_t), intent(in) :: key
-    !> Index among the groups of this name
     integer, intent(in) :: place
     type(problems_t), intent(in) :: problems
     integer :: i
@@ -82,7 +81,6 @@ contains
   pure real(wp) function value_of(deck, key, place) result(value)
     type(deck_t), intent(in) :: deck
     type(key_entry_t), intent(in) :: key
-    !> Index among the groups of this name
     integer, intent(in) :: place
 
     value = 0

@@ -48,7 +48,6 @@ contains
   subroutine remark_core(deck, direction, problems)
     !> The deck with its lines
     type(deck_t), intent(in) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: distances(:)
@@ -95,9 +94,7 @@ contains
   subroutine merge_along(deck, direction, lines, problems)
     !> The deck; its windows are moved
     type(deck_t), intent(inout) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    !> The lines
     real(wp), allocatable, intent(out) :: lines(:)
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: given(:), places(:), stiffened(:)
@@ -143,7 +140,6 @@ contains
       real(wp), intent(in) :: from, to
       !> Group and key that require the line
       character(len=*), intent(in) :: group, key
-      !> Index among the groups of this name
       integer, intent(in), optional :: place
 
       if (abs(to - from) <= rounding*from) return
@@ -158,9 +154,7 @@ contains
   subroutine take_zone_lines(deck, direction, lines, problems)
     !> The deck; its zones are moved
     type(deck_t), intent(inout) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    !> The lines
     real(wp), allocatable, intent(inout) :: lines(:)
     type(problems_t), intent(inout) :: problems
     integer :: i
@@ -205,7 +199,6 @@ contains
 
   !> The line nearest to a coordinate; the coordinate itself if there is none within a distance.
   pure real(wp) function nearest_line(lines, at, distance) result(line)
-    !> Their coordinates
     real(wp), intent(in) :: lines(:)
     !> The coordinate, and the distance
     real(wp), intent(in) :: at, distance
@@ -240,7 +233,6 @@ contains
   !> Reports doublers and ply drops without a line of the mesh on an edge.
   subroutine check_zone_lines(deck, direction, problems)
     type(deck_t), intent(in) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(problems_t), intent(inout) :: problems
     integer :: i
@@ -295,7 +287,6 @@ contains
   !> Lines required along a direction.
   pure function lines_along(deck, direction) result(lines)
     type(deck_t), intent(in) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     real(wp), allocatable :: lines(:)
 
@@ -315,9 +306,7 @@ contains
   !> True if the mesh has no line at a coordinate.
   pure logical function misses(deck, lines, direction)
     type(deck_t), intent(in) :: deck
-    !> The coordinates
     real(wp), intent(in) :: lines(:)
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(cell_line_t) :: cells
     integer :: line

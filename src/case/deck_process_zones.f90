@@ -168,7 +168,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> Their indices
     integer, intent(in) :: doublers(:)
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(cell_line_t) :: line
     integer :: i

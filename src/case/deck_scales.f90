@@ -122,7 +122,6 @@ contains
   !> longer.
   pure real(wp) function edge_near(deck, distance) result(edge)
     type(deck_t), intent(in) :: deck
-    !> The distance
     real(wp), intent(in) :: distance
     type(cell_line_t) :: line
     integer :: direction

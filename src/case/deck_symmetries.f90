@@ -108,7 +108,6 @@ contains
   !> True if a starter across the width of its zone has an image beside it.
   pure logical function strip_is_eccentric(delamination, symmetry) result(eccentric)
     type(delamination_t), intent(in) :: delamination
-    !> The symmetry
     integer, intent(in) :: symmetry
     logical :: halved(2)
 
@@ -121,7 +120,6 @@ contains
   pure logical function is_eccentric(point, symmetry)
     !> Its position, from the centre of the plate
     real(wp), intent(in) :: point(2)
-    !> The symmetry
     integer, intent(in) :: symmetry
 
     is_eccentric = any(abs(point) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
@@ -167,7 +165,6 @@ contains
   !> True if a part of the plate suffices.
   logical function suits(deck, symmetry)
     type(deck_t), intent(in) :: deck
-    !> The part
     integer, intent(in) :: symmetry
     logical :: alike(2)
     integer :: i
@@ -192,7 +189,6 @@ contains
   !> True if the image of each doubler and ply drop is one with the same plies.
   pure logical function has_zone_images(deck, symmetry) result(alike)
     type(deck_t), intent(in) :: deck
-    !> The symmetry
     integer, intent(in) :: symmetry
     logical :: mirrored(2)
 
@@ -222,7 +218,6 @@ contains
   !> True if each clamp has its images in the rig; windows lie at the centre.
   pure logical function supports_are_symmetric(deck, symmetry) result(alike)
     type(deck_t), intent(in) :: deck
-    !> The part
     integer, intent(in) :: symmetry
     logical :: mirrored(2)
     integer :: i

@@ -92,7 +92,6 @@ contains
     type(magnitude_t), intent(in) :: list(:)
     !> Index of the modulus
     integer, intent(in) :: place
-    !> Index of the system
     integer, intent(in) :: system
     logical :: of_material(size(list))
     integer :: unusual, i
@@ -109,7 +108,6 @@ contains
     type(problems_t), intent(inout) :: problems
     !> The value
     type(magnitude_t), intent(in) :: item
-    !> Index of the system
     integer, intent(in) :: system
     !> The finding
     character(len=*), intent(in) :: finding
@@ -144,7 +142,6 @@ contains
   pure integer function unusual_kinds(list, system) result(number)
     !> Values of the deck
     type(magnitude_t), intent(in) :: list(:)
-    !> Index of the system
     integer, intent(in) :: system
     logical :: odd(quantities)
     integer :: i
@@ -161,7 +158,6 @@ contains
   !> Checks the end of the run against the expected events.
   subroutine check_times(deck, system, problems)
     type(deck_t), intent(in) :: deck
-    !> Index of the system
     integer, intent(in) :: system
     type(problems_t), intent(inout) :: problems
     real(wp) :: longest, ratio
@@ -192,7 +188,6 @@ contains
   !> Checks lengths that do not fit on the plate, which would do so in millimetres.
   subroutine check_lengths(deck, system, problems)
     type(deck_t), intent(in) :: deck
-    !> Index of the system
     integer, intent(in) :: system
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: values(:)
@@ -218,7 +213,6 @@ contains
   !> Checks the mass of a drop weight against its speed, or the energy against the thickness of the plate.
   subroutine check_mass(deck, system, problems)
     type(deck_t), intent(in) :: deck
-    !> Index of the system
     integer, intent(in) :: system
     type(problems_t), intent(inout) :: problems
     real(wp) :: base(3), speed, energy
@@ -248,7 +242,6 @@ contains
   !> Checks mass and contact stiffness of the ball against its radius.
   subroutine check_ball(deck, system, problems)
     type(deck_t), intent(in) :: deck
-    !> Index of the system
     integer, intent(in) :: system
     type(problems_t), intent(inout) :: problems
     real(wp) :: base(3), ball, ratio

@@ -47,7 +47,6 @@ contains
     class(ply_zone_t), intent(in) :: zone
     !> Its group, and index among the groups of this name
     character(len=*), intent(in) :: group
-    !> The index
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     real(wp) :: reach(2)
@@ -72,7 +71,6 @@ contains
     type(deck_t), intent(in) :: deck
     class(ply_zone_t), intent(in) :: zone
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     type(ply_zone_t) :: patch, inner

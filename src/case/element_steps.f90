@@ -97,7 +97,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> The slope
     real(wp), intent(in) :: slope
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> (5, points)
     real(wp) :: motion(5, plate%mesh%points())
@@ -145,7 +144,6 @@ contains
   !> Shortest side of elements along a direction.
   pure real(wp) function shortest_edge(deck, direction) result(edge)
     type(deck_t), intent(in) :: deck
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(cell_line_t) :: line
 

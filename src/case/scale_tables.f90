@@ -127,7 +127,6 @@ contains
   subroutine put_sub_plies(lines, deck, plies)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    !> The plies
     type(ply_t), intent(in) :: plies(:)
 
     if (.not. any(is_bimodular(plies%elasticity))) return

@@ -130,7 +130,6 @@ contains
     type(row_t), intent(in) :: row
     !> Group and key; empty: no line is required there
     character(len=:), allocatable, intent(out) :: group, key
-    !> Index among the groups of this name
     integer, intent(out) :: place
     integer :: i
 
@@ -160,7 +159,6 @@ contains
 
     !> True if the row has a side at this distance from the centre.
     pure logical function has_side(distance)
-      !> The distance
       real(wp), intent(in) :: distance
 
       has_side = any(abs(abs(row%sides) - abs(distance)) <= rounding*deck%setup%plate%length(row%direction))
@@ -174,7 +172,6 @@ contains
     type(row_t), intent(in) :: row
     !> The group; empty: there is none
     character(len=:), allocatable, intent(out) :: group
-    !> Index among the groups of this name
     integer, intent(out) :: place
     integer :: i
 

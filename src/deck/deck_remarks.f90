@@ -19,7 +19,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> The error and the values allowed
     character(len=*), intent(in) :: fault
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     call problems%error(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//fault, &
@@ -33,7 +32,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> One clause
     character(len=*), intent(in) :: message
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     call problems%warning(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//message)
@@ -48,7 +46,6 @@ contains
     character(len=*), intent(in) :: keys
     !> Reason
     character(len=*), intent(in) :: message
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -89,7 +86,6 @@ contains
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -111,7 +107,6 @@ contains
   pure integer function line_of(settings, group, key, place) result(line)
     type(settings_t), intent(in) :: settings
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     if (key == '') then
@@ -125,7 +120,6 @@ contains
   pure function head(settings, group, key, place) result(beginning)
     type(settings_t), intent(in) :: settings
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> Such as `&time step = 1e-6: `
     character(len=:), allocatable :: beginning

@@ -121,7 +121,6 @@ contains
   !> A key that its group does not have.
   subroutine report_unknown_key(group, place, entry, vocabulary, problems)
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key
     type(entry_t), intent(in) :: entry
@@ -181,7 +180,6 @@ contains
     type(scan_t), intent(in) :: scan
     !> Index of the group in it; 0: the deck does not have it
     integer, intent(in) :: block
-    !> Index among the groups of this name
     integer, intent(in) :: place
     type(vocabulary_t), intent(in) :: vocabulary
     character(len=*), intent(in) :: group
@@ -233,7 +231,6 @@ contains
   !> Number and values of a given key.
   subroutine check_values(key, place, entry, vocabulary, valid, problems)
     type(key_entry_t), intent(in) :: key
-    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry

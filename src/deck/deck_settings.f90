@@ -90,7 +90,6 @@ contains
   pure integer function line_of_group(self, group, place) result(line)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i, left
 
@@ -108,7 +107,6 @@ contains
   pure integer function find(self, group, key, place) result(index)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: wanted
 
@@ -125,7 +123,6 @@ contains
   pure logical function is_given(self, group, key, place)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -138,7 +135,6 @@ contains
   pure logical function is_known(self, group, key, place)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -151,7 +147,6 @@ contains
   pure integer function line_of(self, group, key, place) result(line)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -166,7 +161,6 @@ contains
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
     type(value_t), allocatable, intent(out) :: values(:)
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -181,7 +175,6 @@ contains
   pure function text_of(self, group, key, place) result(word)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     character(len=:), allocatable :: word
     type(value_t), allocatable :: values(:)
@@ -195,7 +188,6 @@ contains
   pure function texts_of(self, group, key, place) result(words)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: words(:)
     type(value_t), allocatable :: values(:)
@@ -212,7 +204,6 @@ contains
   pure real(wp) function real_of(self, group, key, place)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
@@ -225,7 +216,6 @@ contains
   pure function reals_of(self, group, key, place) result(numbers)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     real(wp), allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
@@ -239,7 +229,6 @@ contains
   pure function integers_of(self, group, key, place) result(numbers)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer, allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
@@ -253,7 +242,6 @@ contains
   pure integer function integer_of(self, group, key, place)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer, allocatable :: numbers(:)
 
@@ -266,7 +254,6 @@ contains
   pure logical function logical_of(self, group, key, place)
     class(settings_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
@@ -284,7 +271,6 @@ contains
     character(len=*), intent(in) :: word
     !> Name of the table, for the echo
     character(len=*), intent(in) :: origin
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -304,7 +290,6 @@ contains
     character(len=*), intent(in) :: word
     !> True: it is a text
     logical, intent(in) :: quoted
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
     integer :: i

@@ -312,7 +312,6 @@ contains
   pure logical function in_range(conditions, number)
     !> Such as `> 0, <= 1, or 'all'`; `any` is none
     character(len=*), intent(in) :: conditions
-    !> The number
     real(wp), intent(in) :: number
     type(line_t), allocatable :: condition(:), parts(:)
     real(wp) :: limit

@@ -14,7 +14,6 @@ contains
 
   !> A message without its numbers: the common part of messages that are reported as one.
   pure function skeleton(message) result(bare)
-    !> The message
     character(len=*), intent(in) :: message
     !> The same with a mark for each number
     character(len=:), allocatable :: bare
@@ -64,7 +63,6 @@ contains
 
   !> Position of the next number that is a separate word.
   pure subroutine find_number(message, start, from, to)
-    !> The message
     character(len=*), intent(in) :: message
     !> Where to begin
     integer, intent(in) :: start

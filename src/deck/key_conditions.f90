@@ -30,7 +30,6 @@ contains
     !> The cell
     character(len=*), intent(in) :: conditions
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     character(len=:), allocatable :: reason
     type(line_t), allocatable :: parts(:)
@@ -90,7 +89,6 @@ contains
     !> Conditions with ` or ` between them
     character(len=*), intent(in) :: alternatives
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     type(condition_t) :: condition
     character(len=:), allocatable :: left
@@ -109,7 +107,6 @@ contains
     type(settings_t), intent(in) :: settings
     type(condition_t), intent(in) :: condition
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     integer :: i
 
@@ -131,7 +128,6 @@ contains
     type(condition_t), intent(in) :: condition
     !> Group of the key asked for
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     type(value_t), allocatable :: values(:)
     integer :: i, item

@@ -115,7 +115,6 @@ contains
 
   !> True for a positive finite number.
   elemental logical function positive(value)
-    !> The number
     real(wp), intent(in) :: value
     positive = value > 0 .and. value <= huge(value)
   end function positive

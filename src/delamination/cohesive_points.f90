@@ -46,9 +46,7 @@ contains
   !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine cohesive_traction(law, jumps, old, traction, new)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Force per area against the jumps; normal component zero in closing
     real(wp), intent(out) :: traction(3)
@@ -69,7 +67,6 @@ contains
   !> Position of jumps on the curve: x = sqrt(N Y/G_c), theory (D2).
   pure function separation_of(law, jumps) result(separation)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> Position on the curve
     type(separation_t) :: separation
@@ -108,9 +105,7 @@ contains
   !> mixture of modes is at least that of the weaker pure mode. It saves the power of the mixture.
   pure logical function may_grow(law, jumps, old)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     real(wp) :: ratio
 
@@ -129,7 +124,6 @@ contains
     type(cohesive_law_t), intent(in) :: law
     !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
 
     damage = max(old%damage, damage_on_curve(separation%ratio, law%failure_ratio))
@@ -137,7 +131,6 @@ contains
 
   !> Class of a point from its damage in the last accepted and in the trial state.
   elemental integer function point_class(old, new) result(class_of_point)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> The point with the trial jumps
     type(cohesive_point_t), intent(in) :: new
@@ -150,7 +143,6 @@ contains
 
   !> Jumps that enter the cohesive law.
   pure function opened(jumps) result(opening_jumps)
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The same with a closing jump set to zero
     real(wp) :: opening_jumps(3)
@@ -161,7 +153,6 @@ contains
   !> Energy per area of these jumps in an undamaged interface, Y.
   pure real(wp) function undamaged_energy(law, jumps) result(energy)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
 
     energy = (law%stiffness_shear*(jumps(1)**2 + jumps(2)**2) + law%stiffness_opening*max(jumps(3), 0.0_wp)**2)/2
@@ -170,7 +161,6 @@ contains
   !> Recoverable energy per area, (1 - d) Y.
   pure real(wp) function stored_energy(law, jumps, point) result(energy)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(in) :: point
@@ -182,7 +172,6 @@ contains
   !> Fraction of shear in the energy of the jumps, B; 0 without jumps.
   pure real(wp) function mode_mixture(law, jumps) result(share)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     type(separation_t) :: separation
 

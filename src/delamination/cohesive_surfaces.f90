@@ -16,7 +16,6 @@ module cohesive_surfaces
 
   !> Law, contact and friction of the surfaces at a point.
   type :: cohesive_surfaces_t
-    !> The cohesive law
     type(cohesive_law_t) :: law
     !> True: contact prevents penetration of damaged surfaces
     logical :: closing = .true.
@@ -37,9 +36,7 @@ contains
   !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine traction(self, jumps, old, force, new)
     class(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Force per area against the jumps
     real(wp), intent(out) :: force(3)
@@ -57,7 +54,6 @@ contains
   !> Energy per area stored by the jumps.
   pure real(wp) function stored(self, jumps, point)
     class(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(in) :: point
@@ -110,9 +106,7 @@ contains
   !> Derivative of the traction.
   pure function slopes(self, jumps, old)
     class(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(3, 3)
@@ -125,9 +119,7 @@ contains
   !> Diagonal for a factored operator, constant within a class of points.
   pure function diagonal(self, jumps, old)
     class(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Pressure per jump
     real(wp) :: diagonal(3)
@@ -144,7 +136,6 @@ contains
   !> Alfano, E. Sacco, Int. J. Numer. Meth. Eng. 68 (2006) 542-582; theory (D4)).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
     class(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(in) :: point
@@ -156,9 +147,7 @@ contains
   !> Derivatives of the friction traction.
   pure function sticking(self, jumps, old) result(slopes)
     type(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Force per area and tangential jump
     real(wp) :: slopes(2, 2)
@@ -179,7 +168,6 @@ contains
   !> True if the surfaces are under contact pressure.
   pure logical function is_in_contact(self, jumps)
     class(cohesive_surfaces_t), intent(in) :: self
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
 
     is_in_contact = self%closing .and. jumps(3) < 0

@@ -17,11 +17,9 @@ contains
   !> mixed mode with G_Ic /= G_IIc.
   pure function traction_slopes(law, jumps, separation, old) result(slopes)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> Their position on the curve
     type(separation_t), intent(in) :: separation
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(3, 3)
@@ -59,9 +57,7 @@ contains
   !> Derivative of the dissipated energy G_c (phi(d) - phi(d_old)); zero unless damage grows.
   pure function dissipation_slopes(law, jumps, old) result(slopes)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Energy per area by jump
     real(wp) :: slopes(3)
@@ -103,9 +99,7 @@ contains
   !> does not depend on closing: contact is added separately.
   pure function operator_stiffness(law, jumps, old) result(diagonal)
     type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Pressure per jump
     real(wp) :: diagonal(3)

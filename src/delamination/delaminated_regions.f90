@@ -32,7 +32,6 @@ contains
   !> in its square or circle; a starter smaller than a cell consists of the cells that touch its centre.
   pure function create_region(mesh, zone, starter, strip, round, at) result(self)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Index of the zone
     integer, intent(in) :: zone
     !> Side or diameter of the starter, of the full plate; 0: none
     real(wp), intent(in) :: starter
@@ -158,7 +157,6 @@ contains
 
     !> True for a cell without a doubler, where there is nothing to be released.
     pure logical function is_bare(cell)
-      !> The cell
       integer, intent(in) :: cell
 
       is_bare = .false.

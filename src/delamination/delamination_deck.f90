@@ -159,7 +159,6 @@ contains
   subroutine fill_delamination(settings, place, starter, delamination)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Index of the group
     integer, intent(in) :: place
     !> Default side of the starter of a front
     real(wp), intent(in) :: starter
@@ -228,7 +227,6 @@ contains
   !> True if a cohesive law is the default: no key of a front is given, and the strengths are known.
   pure logical function suits_cohesive(settings, place, of_plies) result(suits)
     type(settings_t), intent(in) :: settings
-    !> Index of the group
     integer, intent(in) :: place
     !> Strengths YT and S12 of the weaker ply; 0: not given
     real(wp), intent(in) :: of_plies(2)
@@ -241,7 +239,6 @@ contains
   !> True if the deck gives a key that only a front has.
   pure logical function needs_front(settings, place)
     type(settings_t), intent(in) :: settings
-    !> Index of the group
     integer, intent(in) :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -254,7 +251,6 @@ contains
   subroutine fill_strength(settings, place, key, of_plies, strength)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Index of the group
     integer, intent(in) :: place
     character(len=*), intent(in) :: key
     !> Strength of the weaker ply; 0: not given
@@ -306,7 +302,6 @@ contains
   subroutine check_strip(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
     type(delamination_t), intent(in) :: delamination
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
 
@@ -323,7 +318,6 @@ contains
   subroutine check_toughness(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
     type(delamination_t), intent(in) :: delamination
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
 
@@ -340,7 +334,6 @@ contains
   subroutine check_strengths(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
     type(delamination_t), intent(in) :: delamination
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
 
@@ -374,7 +367,6 @@ contains
   subroutine check_law(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
     type(delamination_t), intent(in) :: delamination
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: objection

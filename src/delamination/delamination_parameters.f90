@@ -145,7 +145,6 @@ contains
 
   !> Side of a starter that covers 0.05 % of the plate, as in section 3.3.2 of the paper.
   pure real(wp) function default_starter(length) result(side)
-    !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
     side = sqrt(5.0e-4_wp*product(length))
   end function default_starter

@@ -24,7 +24,6 @@ contains
   !> True for a group of the bond of doublers.
   pure logical function is_bond(settings, place)
     type(settings_t), intent(in) :: settings
-    !> Index of the group
     integer, intent(in) :: place
 
     is_bond = settings%is_given(group, key_bond, place)
@@ -33,7 +32,6 @@ contains
   !> The bond of the doublers of a group, which receive that it is cohesive.
   subroutine new_bond(settings, place, plies, zones, bond)
     type(settings_t), intent(in) :: settings
-    !> Index of the group
     integer, intent(in) :: place
     !> Number of plies of the laminate
     integer, intent(in) :: plies

@@ -125,7 +125,6 @@ contains
 
     !> A number of measurements; a dash without any.
     pure function number_text(number) result(words)
-      !> The number
       integer, intent(in) :: number
       character(len=:), allocatable :: words
 

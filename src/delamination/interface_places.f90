@@ -37,7 +37,6 @@ contains
   !> Plies above the interfaces of a group; without any, one invalid entry, which the checks refuse.
   pure function plies_above(settings, place, between) result(below)
     type(settings_t), intent(in) :: settings
-    !> Index of the group
     integer, intent(in) :: place
     !> Plies below which the angle changes
     integer, intent(in) :: between(:)
@@ -52,7 +51,6 @@ contains
   !> True if the interfaces are selected by a word.
   pure logical function names_all(settings, place)
     type(settings_t), intent(in) :: settings
-    !> Index of the group
     integer, intent(in) :: place
 
     names_all = any(lower_case(settings%text_of(group, key_below_ply, place)) == &

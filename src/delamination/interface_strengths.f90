@@ -14,7 +14,6 @@ contains
   !> Strengths of the interface below each ply: those of its cohesive law, otherwise S12 and YT of the weaker adjacent
   !> ply; none between plies of equal material and angle.
   pure function interlaminar_strengths(plies, number, materials, delaminations) result(strengths)
-    !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
     !> Their numbers among those of the plate
     integer, intent(in) :: number(:)

@@ -35,7 +35,6 @@ module dynamic_steps
     !> True: factorized again before the next correction, as the step control requires or as the last correction took as
     !> many solves as a factorization costs
     logical :: factor_is_due = .false.
-    !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Predictor of the displacement, (5, points); unallocated: constant velocity
     real(wp), allocatable :: guess(:, :)
@@ -96,9 +95,7 @@ contains
   subroutine predict(self, model, old, new)
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> State at the start
     type(state_t), intent(in) :: old
-    !> State at the end
     type(state_t), intent(inout) :: new
 
     if (allocated(self%guess)) then
@@ -165,7 +162,6 @@ contains
   subroutine find_internal_from_motion(self, model, old, new, energy)
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> State at the start
     type(state_t), intent(in) :: old
     !> State at the end; receives internal and inertia forces
     type(state_t), intent(inout) :: new
@@ -215,7 +211,6 @@ contains
   !> The impactor's force is updated only within an iteration, so an impact needs at least one.
   pure logical function may_stop(self, at)
     class(dynamic_step_t), intent(in) :: self
-    !> The iteration
     type(newton_iteration_t), intent(in) :: at
 
     may_stop = at%new%iterations%equilibrium > 0 .or. .not. at%model%plate%setup%impactor%is_present
@@ -266,7 +261,6 @@ contains
   !> Velocity and acceleration at the end of the step.
   subroutine complete(self, at)
     class(dynamic_step_t), intent(in) :: self
-    !> The iteration
     type(newton_iteration_t), intent(inout) :: at
 
     associate (old => at%old, new => at%new)

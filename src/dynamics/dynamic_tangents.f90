@@ -65,7 +65,6 @@ contains
   !> The tangent's model, operator, factors, and the state at which it is taken.
   subroutine set_state(tangent, at, factors)
     type(tangent_product_t), intent(inout) :: tangent
-    !> The iteration
     type(newton_iteration_t), intent(in) :: at
     !> Factors of stiffness and mass
     real(wp), intent(in) :: factors(2)
@@ -96,7 +95,6 @@ contains
 
   !> Adds the slope of the impactor's force to a tangent.
   subroutine add_force_slope(at, coupling, tangent)
-    !> The iteration
     type(newton_iteration_t), intent(in) :: at
     !> The impactor's side of the step
     type(impact_coupling_t), intent(in) :: coupling

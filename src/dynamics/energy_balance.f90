@@ -38,9 +38,7 @@ contains
   subroutine record_step(model, integrator, old, step, force, energy, new)
     type(model_t), intent(in) :: model
     type(plate_integrator_t), intent(in) :: integrator
-    !> State at the start
     type(state_t), intent(in) :: old
-    !> Time step
     real(wp), intent(in) :: step
     !> Force of the impactor in the plate's equation of motion
     real(wp), intent(in) :: force
@@ -113,7 +111,6 @@ contains
   !> weighted equation of motion combined. Zero for alpha_m = alpha_f = gamma = 1/2, beta = 1/4.
   pure real(wp) function integrator_gain(integrator, step, products, pressure_change) result(gain)
     type(plate_integrator_t), intent(in) :: integrator
-    !> Time step
     real(wp), intent(in) :: step
     !> Products of the step's fields
     type(products_t), intent(in) :: products
@@ -132,9 +129,7 @@ contains
   subroutine find_products(model, integrator, old, step, energy, new, products)
     type(model_t), intent(in) :: model
     type(plate_integrator_t), intent(in) :: integrator
-    !> State at the start
     type(state_t), intent(in) :: old
-    !> Time step
     real(wp), intent(in) :: step
     !> Strain energy of this rank's elements
     real(wp), intent(in) :: energy
@@ -165,9 +160,7 @@ contains
   !> points. The reaction of a prescribed line is constant over the step.
   pure function line_products(model, old, new) result(sums)
     type(model_t), intent(in) :: model
-    !> State at the start
     type(state_t), intent(in) :: old
-    !> State at the end
     type(state_t), intent(in) :: new
     real(wp) :: sums(2)
     real(wp), allocatable :: before(:, :), after(:, :), holding(:, :), change(:, :)
@@ -188,7 +181,6 @@ contains
     !> Number of points that this rank owns
     integer, intent(in) :: owned
     type(plate_integrator_t), intent(in) :: integrator
-    !> Time step
     real(wp), intent(in) :: step
     !> Motion at the start of the step
     type(motion_t), intent(in) :: old

@@ -45,9 +45,7 @@ contains
   pure function begin_coupling(plate, integrator, old, step) result(coupling)
     type(composite_plate_t), intent(in) :: plate
     type(plate_integrator_t), intent(in) :: integrator
-    !> State at the start
     type(state_t), intent(in) :: old
-    !> Time step
     real(wp), intent(in) :: step
     type(impact_coupling_t) :: coupling
 

@@ -180,7 +180,6 @@ contains
     type(state_t), intent(inout) :: state
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
-    !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     real(wp), allocatable :: lines(:, :)
 
@@ -208,7 +207,6 @@ contains
   !> the residual ends the iteration. Collective.
   subroutine extrapolate(plate, residual, aitken, correction)
     type(composite_plate_t), intent(in) :: plate
-    !> Residual, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> The correction before; receives this one
     type(aitken_t), intent(inout) :: aitken

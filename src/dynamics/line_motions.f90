@@ -31,7 +31,6 @@ contains
     type(model_t), intent(in) :: model
     !> State of the interfaces, with the tied jumps
     type(interface_state_t), intent(in) :: interfaces
-    !> The time
     real(wp), intent(in) :: time
     !> line_displacement, line_velocity or line_acceleration
     integer, intent(in) :: derivative
@@ -66,7 +65,6 @@ contains
     type(model_t), intent(in) :: model
     !> State of the interfaces, with the tied jumps
     type(interface_state_t), intent(in) :: interfaces
-    !> The time
     real(wp), intent(in) :: time
     !> The motion at that time, with its momentum
     type(motion_t), intent(inout) :: motion

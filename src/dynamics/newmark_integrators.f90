@@ -45,7 +45,6 @@ contains
   !> Velocity and acceleration at the end of a step from the displacement there (Newmark's formulas).
   pure subroutine complete(self, step, old, displacement, velocity, acceleration)
     class(plate_integrator_t), intent(in) :: self
-    !> Time step
     real(wp), intent(in) :: step
     !> Motion at the start
     type(motion_t), intent(in) :: old
@@ -62,7 +61,6 @@ contains
   pure subroutine complete_all(self, step, number, displacement, velocity, acceleration, new_displacement, &
                                new_velocity, new_acceleration)
     class(plate_integrator_t), intent(in) :: self
-    !> Time step
     real(wp), intent(in) :: step
     !> Number of unknowns
     integer, intent(in) :: number
@@ -90,7 +88,6 @@ contains
   !> Factor of the mass in the effective operator, 1/time**2.
   elemental real(wp) function mass_factor(self, step) result(factor)
     class(plate_integrator_t), intent(in) :: self
-    !> Time step
     real(wp), intent(in) :: step
 
     factor = (1 - self%alpha_m)/(self%beta*step**2)

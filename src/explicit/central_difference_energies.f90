@@ -38,7 +38,6 @@ contains
 
   !> Computes the ledger of a state. Collective.
   subroutine record_energies(method, model, now)
-    !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state; receives its ledger
@@ -85,7 +84,6 @@ contains
 
   !> Kinetic energy of the plate at the end of the last step. Collective.
   real(wp) function kinetic_energy(method, plate, now, kept) result(energy)
-    !> The method
     type(central_difference_t), intent(in) :: method
     type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
@@ -99,7 +97,6 @@ contains
 
   !> Adds the kinetic energy of this rank's points, and the part of it that belongs to scaled inertia.
   subroutine add_kinetic(method, plate, now, kept, kinetic, scaled)
-    !> The method
     type(central_difference_t), intent(in) :: method
     type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
@@ -137,7 +134,6 @@ contains
 
   !> Adds the energy stored in this rank's interfaces, springs and loaded clamps.
   subroutine add_stored(method, model, now, stored)
-    !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now

@@ -44,7 +44,6 @@ module central_differences
 
   !> Data of the method that are not part of the state, many because each of nodes, lines and impactor has a rule.
   type, extends(nodal_steps_t) :: central_difference_t
-    !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters
     !> The impactor and its patch
     type(impactor_steps_t) :: impact

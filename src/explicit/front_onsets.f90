@@ -55,7 +55,6 @@ contains
     type(interface_stacks_t), intent(inout) :: stacks
     !> The interfaces; receive the laws
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     integer :: i
 
@@ -78,7 +77,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     type(interface_stacks_t), intent(in) :: stacks
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     integer :: i
 
@@ -104,7 +102,6 @@ contains
     type(interface_stacks_t), intent(inout) :: stacks
     !> The interfaces; receive the law
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     real(wp) :: rate, largest, strength, opening
     integer :: d, direction

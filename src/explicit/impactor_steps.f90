@@ -159,7 +159,6 @@ contains
   pure real(wp) function energy(self, model, step, now)
     class(impactor_steps_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Length of the step
     real(wp), intent(in) :: step
     type(state_t), intent(in) :: now
 

@@ -86,7 +86,6 @@ contains
   !> Sides of the cells of the core, or of all cells without a core.
   pure function core_sides(setup, direction) result(sides)
     class(setup_t), intent(in) :: setup
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> The sides
     real(wp), allocatable :: sides(:)

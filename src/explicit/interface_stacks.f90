@@ -165,7 +165,6 @@ contains
   pure logical function has_layer_below(above, i)
     !> Point above each point; 0: none
     integer, intent(in) :: above(:)
-    !> The point
     integer, intent(in) :: i
 
     has_layer_below = .false.
@@ -176,7 +175,6 @@ contains
   pure integer function last_layer(above, i) result(point)
     !> Point above each point; 0: none
     integer, intent(in) :: above(:)
-    !> The point
     integer, intent(in) :: i
 
     point = i
@@ -243,7 +241,6 @@ contains
     integer, intent(in) :: p
     !> Factors of the strengths and of the stiffness of opening
     real(wp), intent(in) :: factors(2)
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     integer :: first
 
@@ -265,7 +262,6 @@ contains
     integer, intent(in) :: i
     !> The interfaces; their surfaces receive the present jumps as slips
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     integer :: p
 

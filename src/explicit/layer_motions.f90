@@ -13,7 +13,6 @@ contains
   pure subroutine accelerate(inverse, time, force, velocity)
     !> Inverse inertia, as in nodal_inertia_t
     real(wp), intent(in) :: inverse(7)
-    !> The time
     real(wp), intent(in) :: time
     !> Forces and moments
     real(wp), intent(in) :: force(5)
@@ -77,7 +76,6 @@ contains
     integer, intent(in) :: layers
     !> Inverse inertia
     real(wp), intent(in) :: inverse(lanes, 7, layers)
-    !> The time
     real(wp), intent(in) :: time
     !> Forces and moments
     real(wp), intent(in) :: force(lanes, 5, layers)

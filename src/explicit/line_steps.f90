@@ -129,7 +129,6 @@ contains
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     type(nodal_inertia_t), intent(in) :: inertia
-    !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
     logical :: supported(5, size(motion, 2))
     integer :: i

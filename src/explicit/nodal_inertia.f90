@@ -150,7 +150,6 @@ contains
   !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
   pure subroutine add_spring_forces(self, step, u, v, force)
     class(nodal_inertia_t), intent(in) :: self
-    !> Length of the step
     real(wp), intent(in) :: step
     !> Unknowns and their rates, (5, points)
     real(wp), intent(in) :: u(:, :), v(:, :)

@@ -53,12 +53,10 @@ contains
   !> Highest angular frequency of all elements, and the number of the element. Collective.
   subroutine highest_element_frequency(plate, stiffness, scaling, omega, element, of_elements)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(inertia_scaling_t), intent(in) :: scaling
     !> The frequency
     real(wp), intent(out) :: omega
-    !> The element
     integer, intent(out) :: element
     !> Square of the highest frequency of each element, (lanes, batches)
     real(wp), allocatable, intent(out), optional :: of_elements(:, :)
@@ -97,7 +95,6 @@ contains
   !> slopes. Collective.
   real(wp) function stiffened_frequency(plate, stiffness, of_elements, motion) result(omega)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
     real(wp), contiguous, intent(in) :: of_elements(:, :)
@@ -128,9 +125,7 @@ contains
   !> at most the higher of those of each with its own inertia.
   pure subroutine raise_by_beams(plate, b, r, added)
     type(composite_plate_t), intent(in) :: plate
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Squares of frequencies by slopes, of each lane
     real(wp), intent(inout) :: added(lanes)
@@ -148,9 +143,7 @@ contains
   !> Subtracts the slopes of the surface along which u and v are measured.
   pure subroutine take_surface_slopes(elements, b, slopes)
     type(element_batches_t), intent(in) :: elements
-    !> Number of the batch
     integer, intent(in) :: b
-    !> At the Gauss points
     real(wp), intent(inout) :: slopes(lanes, 9, 2)
     real(wp) :: values(lanes, 9)
     integer :: i
@@ -164,11 +157,8 @@ contains
   !> Largest geometric stiffness per area in each element of a batch: the larger eigenvalue of S^T A S + N in element
   !> coordinates.
   pure function geometric_stiffness(c, inverse, slopes, forces) result(largest)
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
-    !> w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> Nxx, Nyy, Nxy there, and moments
     real(wp), intent(in) :: forces(lanes, 9, 6)
@@ -194,7 +184,6 @@ contains
   !> Squares of the highest frequencies of the elements of a batch: largest eigenvalue of K M^-1 by Lanczos iteration.
   function batch_frequencies(plate, b, stiffness, section, beams) result(squares)
     type(composite_plate_t), intent(in) :: plate
-    !> Number of the batch
     integer, intent(in) :: b
     !> Section stiffness
     real(wp), intent(in) :: stiffness(lanes, 21)
@@ -252,7 +241,6 @@ contains
   !> Inverse inertia of the nodes of a batch: of displacement, both, rotation, and w.
   function inverse_inertia(plate, b, section) result(inverse)
     type(composite_plate_t), intent(in) :: plate
-    !> Number of the batch
     integer, intent(in) :: b
     !> Scaled I0, I1, I2
     real(wp), intent(in) :: section(lanes, 3)
@@ -274,7 +262,6 @@ contains
   !> Computes the inverse inertia of elements with beams anew.
   subroutine add_beams(plate, b, section, beams, inverse)
     type(composite_plate_t), intent(in) :: plate
-    !> Number of the batch
     integer, intent(in) :: b
     !> Scaled I0, I1, I2 of the sections, and of the beams, (3, beams)
     real(wp), intent(in) :: section(lanes, 3), beams(:, :)

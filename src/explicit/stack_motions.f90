@@ -30,7 +30,6 @@ module stack_motions
     type(interface_stacks_t) :: stacks
     !> Batches of stacks; unallocated: to be formed for the step
     type(stack_batches_t), allocatable :: batches
-    !> Lines
     type(line_steps_t) :: lines
     !> Frames and springs
     type(rig_steps_t) :: rigs

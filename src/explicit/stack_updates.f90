@@ -96,7 +96,6 @@ contains
     integer, intent(in) :: i
     type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     type(cohesive_surfaces_t) :: surfaces
     real(wp) :: k(3), traction(3)

@@ -67,7 +67,6 @@ contains
   subroutine find_deflections(self, plate, displacement, w, struck)
     class(struck_patch_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (reached)
     real(wp), intent(out) :: w(:)

@@ -14,7 +14,6 @@ contains
   !> Contact force.
   pure real(wp) function loading_force(law, alpha) result(force)
     type(indentation_law_t), intent(in) :: law
-    !> Indentation, at least 0
     real(wp), intent(in) :: alpha
 
     if (alpha <= yield(law)) then
@@ -27,7 +26,6 @@ contains
   !> Derivative of the contact force by the indentation.
   pure real(wp) function loading_stiffness(law, alpha) result(stiffness)
     type(indentation_law_t), intent(in) :: law
-    !> Indentation, at least 0
     real(wp), intent(in) :: alpha
 
     stiffness = hertz_stiffness(law%k, min(alpha, yield(law)))

@@ -14,7 +14,6 @@ contains
   elemental real(wp) function hertz_force(k, alpha) result(force)
     !> Contact stiffness, force per length**1.5
     real(wp), intent(in) :: k
-    !> Indentation, at least 0
     real(wp), intent(in) :: alpha
 
     force = k*alpha**hertz_exponent
@@ -24,7 +23,6 @@ contains
   elemental real(wp) function hertz_stiffness(k, alpha) result(stiffness)
     !> Contact stiffness, force per length**1.5
     real(wp), intent(in) :: k
-    !> Indentation, at least 0
     real(wp), intent(in) :: alpha
 
     stiffness = hertz_exponent*k*sqrt(alpha)

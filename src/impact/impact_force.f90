@@ -15,7 +15,6 @@ module impact_force
 
   !> Contact of impactor and plate in a step.
   type :: contact_step_t
-    !> Indentation law
     type(indentation_law_t) :: law
     !> Committed state of the contact
     type(indentation_t) :: state

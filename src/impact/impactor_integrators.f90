@@ -99,7 +99,6 @@ contains
     !> Mass, integrator
     type(impactor_parameters_t), intent(in) :: parameters
     type(indentation_law_t), intent(in) :: law
-    !> Committed state of the contact
     type(indentation_t), intent(in) :: state
     !> Indentation at the start of the step
     real(wp), intent(in) :: alpha

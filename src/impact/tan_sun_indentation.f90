@@ -55,7 +55,6 @@ contains
   !> Indentation below which the contact force is zero.
   pure function zero_force_indentation(law, state) result(zero_force)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     !> The dent, or 0
     real(wp) :: zero_force
@@ -68,7 +67,6 @@ contains
   !> Contact force.
   pure function indentation_force(law, state, alpha) result(force)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     !> Indentation, reached monotonically from the committed one
     real(wp), intent(in) :: alpha
@@ -89,7 +87,6 @@ contains
   !> Indentation at which the contact force has a value.
   pure real(wp) function indentation_of(law, state, force) result(alpha)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     !> The force; for 0 the indentation of first contact
     real(wp), intent(in) :: force
@@ -108,9 +105,7 @@ contains
   !> Derivative of the contact force; at the largest indentation that of the branch below it.
   pure function indentation_stiffness(law, state, alpha) result(stiffness)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
-    !> Indentation
     real(wp), intent(in) :: alpha
     !> Force per length, zero or positive
     real(wp) :: stiffness
@@ -130,7 +125,6 @@ contains
   !> Mean of the contact force between two indentations, without cancellation; the force if they are equal.
   pure function mean_indentation_force(law, state, alpha_from, alpha_to) result(mean)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     !> Indentation at one end of the path
     real(wp), intent(in) :: alpha_from
@@ -160,7 +154,6 @@ contains
   !> Work of the contact force along a monotonic path.
   pure function indentation_work(law, state, alpha_from, alpha_to) result(work)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     !> Indentation at the start of the path
     real(wp), intent(in) :: alpha_from
@@ -175,7 +168,6 @@ contains
   !> Upper bound of the ratio of the present contact stiffness to that of Hertz at the same indentation.
   pure function stiffening(law, state) result(ratio)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     !> At least 1; the steepest point is the upper end of the unloading or reloading curve
     real(wp) :: ratio
@@ -234,7 +226,6 @@ contains
   !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first contact.
   pure function current_branch(law, state) result(branch)
     type(indentation_law_t), intent(in) :: law
-    !> Committed state
     type(indentation_t), intent(in) :: state
     type(branch_t) :: branch
 

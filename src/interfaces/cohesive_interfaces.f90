@@ -91,9 +91,7 @@ contains
   pure subroutine add_forces(self, plate, old, displacement, force, energy)
     class(cohesive_interfaces_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Internal forces at the owned points, (5, points)
     real(wp), intent(inout) :: force(:, :)
@@ -124,9 +122,7 @@ contains
   pure function tangents_at(self, plate, old, displacement) result(tangents)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Force per jump, (3, 3, owned points); zero where there is no cohesive law
     real(wp), allocatable :: tangents(:, :, :)
@@ -148,7 +144,6 @@ contains
   !> Stores a consistent tangent and its diagonal for the operator.
   pure subroutine store_tangent(self, i, tangent)
     class(cohesive_interfaces_t), intent(inout) :: self
-    !> Point of this rank
     integer, intent(in) :: i
     !> Force per jump
     real(wp), intent(in) :: tangent(3, 3)
@@ -162,9 +157,7 @@ contains
   pure subroutine add_dissipation_slopes(self, plate, old, displacement, slopes)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Derivative with respect to the unknowns of the owned points, (5, points)
     real(wp), intent(inout) :: slopes(:, :)
@@ -267,7 +260,6 @@ contains
   pure function shear_share(self, plate, displacement)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> 0 to 1; 0 where there is no cohesive law, (local points)
     real(wp) :: shear_share(size(plate%zone))
@@ -285,7 +277,6 @@ contains
   pure function pressure(self, plate, displacement)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Pressure; 0 where there is no cohesive law, (local points)
     real(wp) :: pressure(size(plate%zone))
@@ -303,7 +294,6 @@ contains
   !> True if contact prevents penetration of the surfaces of a zone.
   pure logical function prevents_penetration(plate, zone)
     type(composite_plate_t), intent(in) :: plate
-    !> Index of the zone
     integer, intent(in) :: zone
 
     prevents_penetration = plate%setup%delaminations(zone)%contact /= contact_none
@@ -333,7 +323,6 @@ contains
   pure type(cohesive_law_t) function law_at(self, plate, i) result(law)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The point
     integer, intent(in) :: i
 
     law = weakened(plate%interfaces%cohesive_laws(plate%zone(i)), self%strength(i), self%opening(i))
@@ -346,7 +335,6 @@ contains
   pure type(cohesive_surfaces_t) function surfaces_of(self, plate, i) result(surfaces)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The point
     integer, intent(in) :: i
 
     surfaces%law = self%law_at(plate, i)

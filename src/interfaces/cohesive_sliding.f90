@@ -21,7 +21,6 @@ contains
   subroutine update_friction_limits(interfaces, plate, displacement, updates, converged)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Number of updates before convergence
     integer, intent(inout) :: updates

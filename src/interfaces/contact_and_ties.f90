@@ -60,9 +60,7 @@ contains
     !> The state; receives pressures and slopes
     class(contact_and_ties_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
 
@@ -88,9 +86,7 @@ contains
   pure function force(self, plate, i, jumps)
     type(contact_and_ties_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Point of this rank
     integer, intent(in) :: i
-    !> The jumps
     real(wp), intent(in) :: jumps(3)
     real(wp) :: force(3)
 
@@ -107,7 +103,6 @@ contains
   subroutine update_contact(self, plate, displacement, tolerance, updates, converged)
     class(contact_and_ties_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
     real(wp), intent(in) :: tolerance
@@ -127,7 +122,6 @@ contains
   subroutine update_multipliers(self, plate, displacement, converged)
     type(contact_and_ties_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> True: the pressures agree with the gaps, the step has converged
     logical, intent(in) :: converged
@@ -157,7 +151,6 @@ contains
   real(wp) function complementarity(self, plate, displacement)
     class(contact_and_ties_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     integer, allocatable :: points(:)
     real(wp) :: peak
@@ -235,7 +228,6 @@ contains
     !> Penalty of a tied opening: the contact stiffness if that is as large, so that the release of surfaces under
     !> pressure does not change the operator.
     pure real(wp) function tie_like_contact(i) result(stiffness)
-      !> Point of this rank
       integer, intent(in) :: i
 
       stiffness = added(3, i)

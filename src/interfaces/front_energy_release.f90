@@ -16,7 +16,6 @@ module front_energy_release
 
   !> Front of a zone with its energy release rates, the same on every rank.
   type :: front_energy_release_t
-    !> The segments
     type(front_segment_t), allocatable :: segments(:)
     !> The smooth line through them
     type(smooth_front_t) :: line
@@ -31,12 +30,10 @@ contains
   !> Energy release rates along the front of a zone.
   function release_along_front(plate, stiffness, contact, motion, zone, method) result(front)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     type(motion_t), intent(in) :: motion
-    !> Index of the zone
     integer, intent(in) :: zone
     !> release_two_state or release_vcct
     integer, intent(in) :: method
@@ -59,7 +56,6 @@ contains
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     type(motion_t), intent(in) :: motion
-    !> Index of the zone
     integer, intent(in) :: zone
     type(front_segment_t), intent(in) :: segments(:)
     !> Its smooth line
@@ -91,7 +87,6 @@ contains
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     type(motion_t), intent(in) :: motion
-    !> Index of the zone
     integer, intent(in) :: zone
     type(front_segment_t), intent(in) :: segments(:)
     !> Its smooth line
@@ -137,7 +132,6 @@ contains
   !> Distance along a front over which forces and jumps are averaged.
   pure real(wp) function front_reach(plate, zone) result(reach)
     type(composite_plate_t), intent(in) :: plate
-    !> Index of the zone
     integer, intent(in) :: zone
 
     reach = plate%setup%delaminations(zone)%smoothing
@@ -147,9 +141,7 @@ contains
   !> Index of a node's point below an interface on the rank that owns it; 0: on another rank or none.
   pure integer function owned_lower_point(plate, zone, node) result(i)
     type(composite_plate_t), intent(in) :: plate
-    !> Index of the zone
     integer, intent(in) :: zone
-    !> Node
     integer, intent(in) :: node
 
     i = plate%mesh%lower_point(node, zone)

@@ -20,7 +20,6 @@ contains
   !> Delaminates cells where the energy release rate exceeds its critical value.
   subroutine grow_fronts(plate, stiffness, motion, state, fracture, grown)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive new delaminated cells and the largest ratio
@@ -49,7 +48,6 @@ contains
   !> Largest ratio of energy release rate to its critical value in a static analysis, where fronts do not grow.
   subroutine find_release_ratio(plate, stiffness, motion, state)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive the largest ratio
@@ -70,7 +68,6 @@ contains
   subroutine release_cells(plate, state, zone, front, fracture, grown)
     type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(inout) :: state
-    !> Index of the zone
     integer, intent(in) :: zone
     type(front_energy_release_t), intent(in) :: front
     !> Fracture energy of the full plate; that of the new surfaces is added

@@ -73,7 +73,6 @@ contains
   function release_values(plate, interfaces, displacement) result(values)
     type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> One value per column, the same on every rank
     real(wp) :: values(size(release_rows))

@@ -48,7 +48,6 @@ contains
   !> Writes the requested fields.
   subroutine write_interface_fields(plate, stiffness, interfaces, motion, output, fields, error)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
     type(motion_t), intent(in) :: motion
@@ -104,7 +103,6 @@ contains
   !> Writes the onset index of delamination.
   subroutine write_onset(plate, stiffness, interfaces, motion, fields, error)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
     type(motion_t), intent(in) :: motion
@@ -122,7 +120,6 @@ contains
   !> Jumps at the interface above each point's layer.
   pure function jumps(plate, displacement)
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Jumps of u, v and w, zero in the first layer, (3, points)
     real(wp), allocatable :: jumps(:, :)
@@ -190,7 +187,6 @@ contains
   pure function pressures(plate, interfaces, displacement)
     type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Pressure, (1, points)
     real(wp), allocatable :: pressures(:, :)
@@ -203,7 +199,6 @@ contains
   !> border of a zone it is given for the last delaminated cell.
   function release_ahead(plate, stiffness, contact, motion) result(ratio)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact

@@ -118,7 +118,6 @@ contains
   pure function cell_bounds(plate, interfaces, zone) result(bounds)
     type(composite_plate_t), intent(in) :: plate
     type(interface_state_t), intent(in) :: interfaces
-    !> Index of the zone
     integer, intent(in) :: zone
     !> `empty_bound` if there are none
     real(wp) :: bounds(4)

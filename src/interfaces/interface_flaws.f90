@@ -22,7 +22,6 @@ contains
   pure subroutine weaken_beside(interfaces, plate, zone, cracked, reach, part)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(composite_plate_t), intent(in) :: plate
-    !> Index of the zone
     integer, intent(in) :: zone
     !> True for cells of the mesh in which the ply has cracked, on all ranks
     logical, intent(in) :: cracked(:)
@@ -50,7 +49,6 @@ contains
   pure subroutine weaken_around(interfaces, plate, zone, x, y, reach, part)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(composite_plate_t), intent(in) :: plate
-    !> Index of the zone
     integer, intent(in) :: zone
     !> Ends of the rectangle
     real(wp), intent(in) :: x(2), y(2)
@@ -83,7 +81,6 @@ contains
   !> Cells of the mesh within the distance of a zone in which a crack affects its interface.
   pure function reachable_cells(mesh, zone, reach) result(reachable)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Index of the zone
     integer, intent(in) :: zone
     !> Distance from a crack within which strengths are reduced
     real(wp), intent(in) :: reach

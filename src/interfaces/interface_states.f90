@@ -24,7 +24,6 @@ module interface_states
     type(cohesive_interfaces_t) :: cohesive
     !> Released ties with forces that are ramped down, and the energy released
     type(tie_release_t) :: ties
-    !> Contact with rigs
     type(rig_contact_t) :: rig
     !> Largest energy release rate on the fronts over its critical value
     real(wp) :: release_ratio = 0
@@ -61,9 +60,7 @@ contains
   subroutine add_to_residual(self, model, displacement, residual)
     class(interface_state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
 
     call self%ties%add_to_residual(model%plate, residual)
@@ -75,7 +72,6 @@ contains
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(interface_state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
     real(wp), intent(in) :: tolerance

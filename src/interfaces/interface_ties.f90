@@ -73,7 +73,6 @@ contains
   pure integer function connection(self, plate, i)
     class(interface_ties_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Point of this rank
     integer, intent(in) :: i
 
     connection = connection_none
@@ -94,7 +93,6 @@ contains
   !> Stiffness of a penalty tie at a point.
   pure real(wp) function tie_stiffness(plate, i) result(stiffness)
     type(composite_plate_t), intent(in) :: plate
-    !> Point of this rank
     integer, intent(in) :: i
 
     stiffness = plate%setup%delaminations(plate%zone(i))%penalty_stiffness
@@ -133,7 +131,6 @@ contains
   real(wp) function penetration(self, plate, displacement)
     class(interface_ties_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
     integer :: i

@@ -24,7 +24,6 @@ contains
   !> Collective; the same on every rank.
   function joined_stacks_of(plate, stiffness, delaminated, displacement) result(self)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated fraction of the area above each element, (1, elements)
     real(wp), intent(in) :: delaminated(:, :)
@@ -59,11 +58,9 @@ contains
   !> Shear forces, their derivatives and delaminated fractions of all elements of the mesh. Collective.
   function gathered(plate, stiffness, delaminated, displacement) result(everywhere)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated fraction of the area above each element, (1, elements)
     real(wp), intent(in) :: delaminated(:, :)
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Qx, Qy; Qx,x Qx,y Qy,x Qy,y; delaminated fraction, (7, elements of the mesh)
     real(wp), allocatable :: everywhere(:, :)

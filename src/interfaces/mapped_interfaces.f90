@@ -44,7 +44,6 @@ contains
   pure subroutine set_slips(interfaces, plate, displacement)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     type(sliding_t) :: new
     real(wp) :: traction(2)

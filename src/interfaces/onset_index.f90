@@ -17,13 +17,11 @@ module onset_index
     type(ply_stack_t) :: stack
     !> In shear and opening, of the interface below each ply, (2, plies - 1)
     real(wp), allocatable :: values(:, :)
-    !> The stresses
     type(unit_stresses_t) :: unit
   end type strengths_t
 
   !> Data for the index of a stack.
   type :: onset_t
-    !> The stacks
     type(joined_stacks_t) :: stacks
     !> The different laminates, their strengths and stresses
     type(strengths_t), allocatable :: laminates(:)

@@ -55,7 +55,6 @@ contains
 
     !> Node of a point of this rank.
     pure integer function node_of(i)
-      !> The point
       integer, intent(in) :: i
 
       node_of = plate%mesh%point_node(plate%distribution%points(i))

@@ -21,7 +21,6 @@ contains
   !> rank.
   function required_extents(plate, stiffness, interfaces, displacement) result(extents)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
     !> Displacement, ghosts up to date, (5, points)
@@ -49,7 +48,6 @@ contains
   !> Extents over the cells without layers that the onset index requires.
   function around_onset(plate, stiffness, interfaces, displacement) result(extents)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
     !> Displacement, ghosts up to date, (5, points)
@@ -101,7 +99,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Centre of the rectangle
     real(wp), intent(in) :: centre(2)
-    !> The cell
     integer, intent(in) :: cell
     !> Along x and y
     real(wp) :: extents(2)

@@ -69,9 +69,7 @@ contains
     !> The state; receives pressures and slopes
     class(rig_contact_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
 
@@ -91,7 +89,6 @@ contains
   pure subroutine add_springs(self, model, displacement, force, energy)
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Internal forces at the owned points, (5, points)
     real(wp), intent(inout) :: force(:, :)
@@ -112,7 +109,6 @@ contains
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(rig_contact_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
     real(wp), intent(in) :: tolerance

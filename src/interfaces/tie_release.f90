@@ -113,7 +113,6 @@ contains
   pure subroutine ramp_down(self, plate, step)
     class(tie_release_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Time step
     real(wp), intent(in) :: step
     integer :: i
 
@@ -136,7 +135,6 @@ contains
   pure subroutine add_to_residual(self, plate, residual)
     class(tie_release_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
 

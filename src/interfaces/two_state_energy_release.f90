@@ -31,7 +31,6 @@ contains
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
-    !> Index of the zone
     integer, intent(in) :: zone
     type(front_segment_t), intent(in) :: segments(:)
     !> Zero, G, zero, (3, segments)
@@ -105,7 +104,6 @@ contains
   !> plate.
   pure function symmetric(plate, node, strains)
     type(composite_plate_t), intent(in) :: plate
-    !> Node
     integer, intent(in) :: node
     !> Strains at the node
     real(wp), intent(in) :: strains(8)
@@ -151,7 +149,6 @@ contains
   !> rank; 0: on another rank.
   pure function front_elements(plate, zone, segments) result(elements)
     type(composite_plate_t), intent(in) :: plate
-    !> Index of the zone
     integer, intent(in) :: zone
     type(front_segment_t), intent(in) :: segments(:)
     !> Elements, (2 layers, 2 sides, segments)

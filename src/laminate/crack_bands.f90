@@ -58,7 +58,6 @@ contains
     real(wp), intent(in) :: lengths(2)
     !> Strains of the ply without permanent ones
     type(band_strains_t), intent(in) :: strains
-    !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
     !> The same with its present permanent strain; receives the damage
     type(band_state_t), intent(inout) :: new
@@ -88,7 +87,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
-    !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
     !> The ply with these strains
     type(band_state_t), intent(inout) :: new
@@ -140,7 +138,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
-    !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
     !> The ply with these strains
     type(band_state_t), intent(inout) :: new
@@ -170,7 +167,6 @@ contains
 
     !> Loss of G12 at a fraction of the strains.
     pure real(wp) function loss_at(part) result(loss)
-      !> The part
       real(wp), intent(in) :: part
 
       loss = max(old%shear_damage, shear_loss(band%elasticity%g12, band%shear_beta, part*sqrt(strains%shear_square)))
@@ -178,7 +174,6 @@ contains
 
     !> True if the matrix cracks at a fraction of the strains.
     pure logical function cracks_at(part) result(cracks)
-      !> The part
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 

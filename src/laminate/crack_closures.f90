@@ -41,7 +41,6 @@ contains
   !> stresses have the assumed signs. The complementary energy is convex, so that there is one. Along the fibres,
   !> compression has its own modulus.
   pure function fractions_under(elasticity, mean, left) result(fractions)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
@@ -77,7 +76,6 @@ contains
 
   !> Mean uniaxial strains, those that s11 or s22 alone would cause: s11/(E1 left) and s22/(E2 left).
   pure function uniaxial_strains(elasticity, mean, left) result(strains)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
@@ -92,7 +90,6 @@ contains
 
   !> Poisson's ratios nu21 and nu12 of a damaged ply.
   pure function coupling(elasticity, left) result(part)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Remaining fractions of the stiffness
     real(wp), intent(in) :: left(2)
@@ -105,7 +102,6 @@ contains
   !> Uniaxial strain, that s11 or s22 alone would cause: e1 + part e2, e2 + part e1, over a common divisor. With E1c its
   !> squares in compression are weighted by E1c/E1, so that it measures the energy that damage can release.
   pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
@@ -136,7 +132,6 @@ contains
 
   !> Means over the sub-plies of a ply.
   pure subroutine find_means(elasticity, strains, left, direction, spread, means, is_open)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
@@ -171,7 +166,6 @@ contains
 
   !> Share that the mean compression along and across the fibres has in the energy that damage there can release.
   pure function compressed_share(elasticity, strains, left) result(share)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
@@ -200,7 +194,6 @@ contains
 
   !> Mean stresses of closed cracks along and across the fibres, and half their product with the mean strains.
   pure function find_recovered(elasticity, strains, left) result(recovered)
-    !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness

@@ -22,9 +22,7 @@ contains
   !> Material of a ply with the strengths of its failure criteria: in-situ strengths if the deck requests them. A block
   !> that is the complete laminate has no neighbours; its strengths are those of the material.
   pure function material_in_place(plies, ply, materials, damage) result(material)
-    !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
-    !> The ply
     integer, intent(in) :: ply
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
@@ -44,9 +42,7 @@ contains
 
   !> Strengths of a ply in the criterion for cracks along its fibres, on all planes.
   pure function crack_strengths(plies, ply, materials, damage) result(strengths)
-    !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
-    !> The ply
     integer, intent(in) :: ply
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)

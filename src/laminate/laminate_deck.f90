@@ -209,7 +209,6 @@ contains
     integer, intent(out) :: index
     !> Group of the plies that name it
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
 

@@ -26,7 +26,6 @@ contains
   !> Modulus of a beam of unidirectional plies in pure bending (S. Timoshenko, Strength of Materials, part II, 1941):
   !> 4 E1 E1c/(sqrt(E1) + sqrt(E1c))**2. It is exactly E1 where both are equal.
   elemental real(wp) function bending_modulus(elasticity) result(modulus)
-    !> Constants of a ply
     type(elasticity_t), intent(in) :: elasticity
 
     modulus = elasticity%e1

@@ -76,7 +76,6 @@ contains
 
   !> Strain with the sign of the stress along the fibres, with E1 as with E1c: e1 + nu21 e2.
   pure real(wp) function uniaxial_strain(elasticity, strains)
-    !> Constants of the ply
     type(elasticity_t), intent(in) :: elasticity
     !> Strains along and across the fibres
     real(wp), intent(in) :: strains(2)
@@ -151,7 +150,6 @@ contains
 
   !> Plane-stress stiffness in material axes, theory (P3).
   pure function reduced_stiffness(elasticity) result(stiffness)
-    !> Elastic constants
     type(elasticity_t), intent(in) :: elasticity
     !> Q11, Q12, Q22, Q66
     real(wp) :: stiffness(4)

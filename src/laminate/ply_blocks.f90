@@ -10,7 +10,6 @@ contains
 
   !> First and last ply of the block that a ply belongs to.
   pure function block_of(plies, ply) result(range)
-    !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
     !> One of the block
     integer, intent(in) :: ply
@@ -30,7 +29,6 @@ contains
 
   !> Thickness of the block that a ply belongs to.
   pure real(wp) function block_thickness(plies, ply) result(thickness)
-    !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
     !> One of the block
     integer, intent(in) :: ply

@@ -21,7 +21,6 @@ contains
 
   !> Mean tau_xz and tau_yz (rows) of each ply of a laminate for Qx = 1 and Qy = 1 (columns).
   pure function shear_shares_of(plies) result(shares)
-    !> All plies
     type(ply_t), intent(in) :: plies(:)
     !> (2, 2, plies)
     real(wp) :: shares(2, 2, size(plies))
@@ -41,7 +40,6 @@ contains
 
   !> Mean tau_xz and tau_yz of the plies of a layer, or of the whole laminate, whose integral is its shear force.
   pure function shear_of_plies(plies, shares, force) result(stress)
-    !> The plies
     type(ply_t), intent(in) :: plies(:)
     !> Their part of the result of shear_shares_of
     real(wp), intent(in) :: shares(:, :, :)

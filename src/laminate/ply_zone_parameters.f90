@@ -78,7 +78,6 @@ contains
   !> Coordinates of the two edges of a zone across a direction.
   pure function edges(self, direction)
     class(ply_zone_t), intent(in) :: self
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     real(wp) :: edges(2)
 

@@ -165,7 +165,6 @@ contains
   !> The different combinations of zones, that without any first, and their shares of the plate's area.
   pure subroutine find_shares(self, length, known, shares)
     class(ply_zones_t), intent(in) :: self
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
     !> True for the zones of a combination, (zones, combinations)
     logical, allocatable, intent(out) :: known(:, :)
@@ -187,9 +186,7 @@ contains
   !> Coordinates of the plate's and all zones' edges, ascending.
   pure function lines_of(self, length, direction) result(lines)
     type(ply_zones_t), intent(in) :: self
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     real(wp), allocatable :: lines(:)
     real(wp), allocatable :: edges(:)
@@ -320,7 +317,6 @@ contains
     type(ply_drop_t), intent(in) :: drops(:)
     !> True for those at the place
     logical, intent(in) :: here(:)
-    !> Plies of the laminate
     type(ply_t), allocatable, intent(inout) :: plies(:)
     !> Their numbers
     integer, allocatable, intent(inout) :: number(:)

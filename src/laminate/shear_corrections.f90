@@ -18,7 +18,6 @@ contains
 
   !> Default reduction for a stack.
   pure integer function natural_correction(plies) result(correction)
-    !> All plies
     type(ply_t), intent(in) :: plies(:)
 
     correction = merge(shear_energy, shear_five_sixths, shear_contrast(plies) > max_contrast)
@@ -26,7 +25,6 @@ contains
 
   !> Largest over smallest shear modulus of the plies across x or y, whichever differ more.
   pure real(wp) function shear_contrast(plies) result(contrast)
-    !> All plies
     type(ply_t), intent(in) :: plies(:)
     real(wp) :: moduli(3, size(plies))
     integer :: i
@@ -40,7 +38,6 @@ contains
   !> Transverse shear stiffness with the factor 5/6 over that of equilibrium, in the direction where this is largest:
   !> the larger eigenvalue of one times the inverse of the other.
   pure real(wp) function shear_excess(plies) result(excess)
-    !> All plies
     type(ply_t), intent(in) :: plies(:)
     real(wp) :: factor(21), energy(21), flexibility(3), ratio(2, 2), middle
 

@@ -93,7 +93,6 @@ contains
   !> equilibrium, theory (P6). It would vanish for a layer in which those stresses cancel; below sqrt(epsilon) of the
   !> stiffness with free faces, with which solutions still have half of their digits, the latter is used.
   pure function layer_stiffness(plies, elasticity, first, last, shear_correction) result(stiffness)
-    !> All plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Present elastic constants of the plies of the layer
     type(elasticity_t), intent(in) :: elasticity(:)

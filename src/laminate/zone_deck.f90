@@ -83,7 +83,6 @@ contains
   subroutine fill_rectangle(settings, group, place, at, sides)
     type(settings_t), intent(in) :: settings
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     !> Receive them
     real(wp), intent(inout) :: at(2), sides(2)
@@ -97,7 +96,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> Group and key
     character(len=*), intent(in) :: group, key
-    !> Index among the groups of this name
     integer, intent(in) :: place
 
     face = code_of(settings%text_of(group, key, place), 'front back', [front_face, back_face])
@@ -107,7 +105,6 @@ contains
   subroutine fill_doubler(settings, materials, place, doubler, problems)
     type(settings_t), intent(in) :: settings
     type(material_t), intent(in) :: materials(:)
-    !> Index among the groups of this name
     integer, intent(in) :: place
     type(doubler_t), intent(inout) :: doubler
     type(problems_t), intent(inout) :: problems
@@ -151,7 +148,6 @@ contains
     type(ply_zones_t), intent(in) :: zones
     !> Number of plies of the plate's laminate; 0: not known
     integer, intent(in) :: plies
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
     type(problems_t), intent(inout) :: problems
     integer :: i
@@ -175,10 +171,8 @@ contains
   subroutine check_rectangle(settings, group, place, zone, length, problems)
     type(settings_t), intent(in) :: settings
     character(len=*), intent(in) :: group
-    !> Index among the groups of this name
     integer, intent(in) :: place
     class(ply_zone_t), intent(in) :: zone
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
     type(problems_t), intent(inout) :: problems
     integer :: direction
@@ -200,7 +194,6 @@ contains
   subroutine check_doublers(settings, doublers, length, problems)
     type(settings_t), intent(in) :: settings
     type(doubler_t), intent(in) :: doublers(:)
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
     type(problems_t), intent(inout) :: problems
     integer :: i, j
@@ -225,7 +218,6 @@ contains
     type(ply_drop_t), intent(in) :: drops(:)
     !> Number of plies of the plate's laminate; 0: not known
     integer, intent(in) :: plies
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
     type(problems_t), intent(inout) :: problems
     logical :: missing(plies)

@@ -36,7 +36,6 @@ module element_places
     !> Values of a matrix of one rank, row by row.
     integer(c_int) function get_values(matrix, values) bind(c, name='MatSeqSBAIJGetArray')
       import :: c_int, c_intptr_t, c_ptr
-      !> The matrix
       integer(c_intptr_t), value :: matrix
       !> Their address
       type(c_ptr), intent(out) :: values
@@ -65,7 +64,6 @@ contains
   !> Starts an assembly.
   subroutine begin(self, matrix, elements, ierr)
     class(element_places_t), intent(inout) :: self
-    !> The matrix
     type(tMat), intent(in) :: matrix
     !> Number of elements of this rank
     integer, intent(in) :: elements
@@ -84,7 +82,6 @@ contains
   !> Adds an element's matrix. In the first assembly PETSc adds it, and checks it against the pattern.
   subroutine add(self, element, equations, matrix, added)
     class(element_places_t), intent(inout) :: self
-    !> Number of the element on this rank
     integer, intent(in) :: element
     !> Equation of each row, -1 for a constrained row
     integer, intent(in) :: equations(:)
@@ -114,7 +111,6 @@ contains
   !> Finds the positions for an element in its first assembly.
   pure subroutine find(self, element, equations)
     class(element_places_t), intent(inout) :: self
-    !> Number of the element on this rank
     integer, intent(in) :: element
     !> Equation of each row, -1 for a constrained row
     integer, intent(in) :: equations(:)

@@ -76,7 +76,6 @@ module krylov_solvers
     !> Sets the context of a matrix-free matrix: the C entries accept any address.
     integer(c_int) function set_matrix_context(matrix, context) bind(c, name='MatShellSetContext')
       import :: c_int, c_intptr_t, c_ptr
-      !> The matrix
       integer(c_intptr_t), value :: matrix
       !> The address
       type(c_ptr), value :: context
@@ -85,7 +84,6 @@ module krylov_solvers
     !> Its context.
     integer(c_int) function get_matrix_context(matrix, context) bind(c, name='MatShellGetContext')
       import :: c_int, c_intptr_t, c_ptr
-      !> The matrix
       integer(c_intptr_t), value :: matrix
       !> The address
       type(c_ptr), intent(out) :: context
@@ -168,7 +166,6 @@ contains
 
   !> The products in the context of a matrix.
   subroutine find_products(matrix, products, ierr)
-    !> The matrix
     type(tMat), intent(in) :: matrix
     type(products_t), pointer, intent(out) :: products
     !> PETSc's code
@@ -181,7 +178,6 @@ contains
 
   !> Product of the matrix, with scaled rows.
   subroutine multiply_rows(matrix, vector, product, ierr)
-    !> The matrix
     type(tMat) :: matrix
     !> The vector, and its product
     type(tVec) :: vector, product

@@ -184,7 +184,6 @@ contains
   !> Factorizes a matrix, repeatedly with more memory if MUMPS requires it. Collective.
   subroutine factorize(self, matrix, outcome, error)
     class(petsc_factor_t), intent(inout) :: self
-    !> The matrix
     type(tMat), intent(in) :: matrix
     !> One of the factor_* outcomes, the same on every rank
     integer, intent(out) :: outcome
@@ -214,7 +213,6 @@ contains
   !> Factorizes a matrix once.
   subroutine factorize_once(self, matrix, outcome, lacks_memory, error)
     class(petsc_factor_t), intent(inout) :: self
-    !> The matrix
     type(tMat), intent(in) :: matrix
     !> One of the factor_* outcomes
     integer, intent(out) :: outcome

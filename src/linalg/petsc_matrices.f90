@@ -80,7 +80,6 @@ contains
 
   !> Sets all entries of the pattern to zero, as PETSc removes entries that the first assembly does not set.
   subroutine fill_pattern(matrix, first_row, row_start, columns, ierr)
-    !> The matrix
     type(tMat), intent(inout) :: matrix
     !> First row that this rank owns
     integer, intent(in) :: first_row

@@ -58,7 +58,6 @@ contains
   pure function cells_along(plate, mesh, direction) result(line)
     type(plate_t), intent(in) :: plate
     type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(cell_line_t) :: line
 
@@ -69,7 +68,6 @@ contains
   pure function cells_from_struck(plate, mesh, direction) result(line)
     type(plate_t), intent(in) :: plate
     type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     type(cell_line_t) :: line
 
@@ -81,7 +79,6 @@ contains
   pure function cell_edges(plate, mesh, direction) result(edges)
     type(plate_t), intent(in) :: plate
     type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> Ascending coordinates, (0:cells)
     real(wp), allocatable :: edges(:)
@@ -111,7 +108,6 @@ contains
     !> Moves edges to required lines. The border of the core is kept unless a line is within half a cell of it: it then
     !> moves to that line, as a narrow row of cells between them would limit the step.
     pure subroutine take(lines)
-      !> The lines
       real(wp), intent(in) :: lines(:)
       real(wp) :: kept(5)
       integer :: i
@@ -128,7 +124,6 @@ contains
   pure logical function has_enough_elements(plate, mesh, direction) result(enough)
     type(plate_t), intent(in) :: plate
     type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
 
     associate (number => mesh%elements(direction))
@@ -143,7 +138,6 @@ contains
   pure integer function fewest_elements(plate, mesh, direction) result(fewest)
     type(plate_t), intent(in) :: plate
     type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     logical :: halved(2)
     integer :: parts
@@ -165,7 +159,6 @@ contains
   pure logical function needs_even_elements(plate, mesh, direction) result(even)
     type(plate_t), intent(in) :: plate
     type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     logical :: halved(2)
 
@@ -234,7 +227,6 @@ contains
   !> displacements and rotations have the opposite sign. The centre is its own image; other nodes have no image, 0.
   pure integer function turned_node(self, node) result(image)
     class(cell_grid_t), intent(in) :: self
-    !> Node
     integer, intent(in) :: node
     integer :: lines(2)
 
@@ -247,7 +239,6 @@ contains
   !> True for a dependent node: its image has the lower number and determines its motion.
   pure logical function is_dependent(self, node)
     class(cell_grid_t), intent(in) :: self
-    !> Node
     integer, intent(in) :: node
 
     is_dependent = self%turned_node(node) > node
@@ -256,7 +247,6 @@ contains
   !> True where a cell lies under the loaded patch.
   pure logical function in_patch(self, cell, patch)
     class(cell_grid_t), intent(in) :: self
-    !> Cell
     integer, intent(in) :: cell
     !> Side of the patch
     real(wp), intent(in) :: patch

@@ -88,7 +88,6 @@ contains
   !> Coordinates of the ends of a cell.
   pure function ends(self, cell)
     class(cell_line_t), intent(in) :: self
-    !> From 1
     integer, intent(in) :: cell
     real(wp) :: ends(2)
 
@@ -98,7 +97,6 @@ contains
   !> Side of a cell.
   pure real(wp) function side(self, cell)
     class(cell_line_t), intent(in) :: self
-    !> From 1
     integer, intent(in) :: cell
 
     side = self%edges(cell + 1) - self%edges(cell)
@@ -223,7 +221,6 @@ contains
     class(cell_line_t), intent(in) :: self
     !> The coordinate
     real(wp), intent(in) :: coordinate
-    !> The cell, from 1
     integer, intent(out) :: cell
     !> One value per node
     real(wp), intent(out) :: shapes(3)
@@ -279,7 +276,6 @@ contains
     class(cell_line_t), intent(in) :: self
     !> The interval
     real(wp), intent(in) :: ends(2)
-    !> The distance
     real(wp), intent(in) :: distance
     !> First and last
     integer :: lines(2)
@@ -345,7 +341,6 @@ contains
   !> Mean side of the entire cells within a distance of the origin; if there are none, of those beside it.
   pure real(wp) function mean_side(self, distance) result(side)
     class(cell_line_t), intent(in) :: self
-    !> The distance
     real(wp), intent(in) :: distance
     integer :: first, last
 

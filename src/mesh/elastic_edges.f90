@@ -32,7 +32,6 @@ contains
   pure function edge_springs(grid, plate, cell) result(springs)
     class(cell_grid_t), intent(in) :: grid
     type(plate_t), intent(in) :: plate
-    !> The cell
     integer, intent(in) :: cell
     type(edge_spring_t), allocatable :: springs(:)
     integer :: place(2), edge, normal

@@ -128,9 +128,7 @@ contains
   !> True if every cell around a node belongs to a zone; the model's own border counts as inside.
   pure logical function inside_zone(self, zone, node) result(inside)
     type(layered_mesh_t), intent(in) :: self
-    !> Index of the zone
     integer, intent(in) :: zone
-    !> Node
     integer, intent(in) :: node
     integer :: lines(2), columns(2), rows(2), column, row
 
@@ -207,9 +205,7 @@ contains
   !> Element of a cell whose layer contains a ply; the lowest one for a ply below all of them.
   pure integer function element_at(self, cell, ply) result(element)
     class(layered_mesh_t), intent(in) :: self
-    !> Cell
     integer, intent(in) :: cell
-    !> Ply
     integer, intent(in) :: ply
 
     element = self%first_element(cell)
@@ -222,7 +218,6 @@ contains
   !> Smallest and largest number of the plies of an element's layer.
   pure function plies_of(self, element) result(range)
     class(layered_mesh_t), intent(in) :: self
-    !> Element
     integer, intent(in) :: element
     integer :: range(2)
 
@@ -232,7 +227,6 @@ contains
   !> True for an element whose layer has the struck face.
   elemental logical function is_top(self, element)
     class(layered_mesh_t), intent(in) :: self
-    !> Element
     integer, intent(in) :: element
 
     is_top = self%first_element(self%element_cell(element)) == element
@@ -241,9 +235,7 @@ contains
   !> True for an element whose upper face is the interface of a zone.
   elemental logical function is_below(self, element, zone)
     class(layered_mesh_t), intent(in) :: self
-    !> Element
     integer, intent(in) :: element
-    !> Index of the zone
     integer, intent(in) :: zone
 
     is_below = .not. self%is_top(element) .and. &
@@ -266,7 +258,6 @@ contains
   !> True for a point whose upper face is the bond of a doubler.
   pure logical function is_bond(self, point)
     class(layered_mesh_t), intent(in) :: self
-    !> The point
     integer, intent(in) :: point
 
     is_bond = self%point_zone(point) > 0
@@ -276,7 +267,6 @@ contains
   !> True for a point of the layer of a doubler: below its bond on the back, above it on the struck face.
   pure logical function is_doubler(self, point)
     class(layered_mesh_t), intent(in) :: self
-    !> The point
     integer, intent(in) :: point
 
     is_doubler = self%is_bond(point)
@@ -290,7 +280,6 @@ contains
   !> True for a node with a doubler bonded to the struck face by an interface.
   pure logical function is_under_doubler(self, node)
     class(layered_mesh_t), intent(in) :: self
-    !> Node
     integer, intent(in) :: node
 
     is_under_doubler = self%first_point(node) + 1 < self%first_point(node + 1)
@@ -312,7 +301,6 @@ contains
   !> Master point of a point on the cut line of point symmetry; 0: it is independent.
   pure integer function master(self, point)
     class(layered_mesh_t), intent(in) :: self
-    !> Point
     integer, intent(in) :: point
 
     master = 0
@@ -324,7 +312,6 @@ contains
   !> Points of the layer that begins with a ply: at each node the lowest point not below that ply's top.
   pure function layer_points(self, cell, first_ply) result(points)
     type(layered_mesh_t), intent(in) :: self
-    !> Cell
     integer, intent(in) :: cell
     !> First ply of the layer
     integer, intent(in) :: first_ply
@@ -356,7 +343,6 @@ contains
   !> Area of a zone in the modelled part.
   pure real(wp) function zone_area(self, zone) result(area)
     class(layered_mesh_t), intent(in) :: self
-    !> Index of the zone
     integer, intent(in) :: zone
     integer :: cell
 
@@ -385,7 +371,6 @@ contains
   !> Length of the mean cell of a zone: the root of its mean area.
   pure real(wp) function mean_cell(self, zone) result(length)
     class(layered_mesh_t), intent(in) :: self
-    !> Index of the zone
     integer, intent(in) :: zone
 
     if (allocated(self%zones(zone)%bonded)) then

@@ -47,7 +47,6 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
-    !> The node
     integer, intent(in) :: node
     !> True: points may have the equations of their images, everywhere in the plate
     logical, intent(in) :: folded
@@ -70,7 +69,6 @@ contains
   !> this node, and the equations around its image are coupled, too.
   pure logical function near_cut(mesh, node)
     type(layered_mesh_t), intent(in) :: mesh
-    !> The node
     integer, intent(in) :: node
     integer :: lines(2)
 
@@ -83,7 +81,6 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
-    !> The node
     integer, intent(in) :: node
     !> True: points may have the equations of their images, everywhere in the plate
     logical, intent(in) :: folded
@@ -103,7 +100,6 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
-    !> The node
     integer, intent(in) :: node
     !> Equations, from 0
     integer, allocatable :: list(:)
@@ -130,7 +126,6 @@ contains
   !> First and last point on each line of nodes, of those that share a cell with a node.
   pure subroutine find_points_around(mesh, node, lines, first, last)
     type(layered_mesh_t), intent(in) :: mesh
-    !> The node
     integer, intent(in) :: node
     !> Number of lines
     integer, intent(out) :: lines

@@ -69,7 +69,6 @@ contains
   !> Adds coordinates to the required lines of the mesh, in the order of their distance from the centre, so that the
   !> mesh does not depend on their source.
   pure subroutine add_lines(lines, further)
-    !> The lines
     real(wp), allocatable, intent(inout) :: lines(:)
     !> More of them
     real(wp), intent(in) :: further(:)
@@ -115,7 +114,6 @@ contains
   !> True if the initial deflection has the symmetry of the modelled part, so that it is that of the full plate.
   pure logical function has_symmetric_imperfection(plate, symmetry) result(alike)
     type(plate_t), intent(in) :: plate
-    !> The part
     integer, intent(in) :: symmetry
 
     alike = .not. any(is_mirrored(symmetry) .and. mod(plate%half_waves, 2) == 0)
@@ -125,7 +123,6 @@ contains
 
   !> Number of models that make up the full plate.
   pure integer function parts_of(symmetry) result(parts)
-    !> Part that is modelled
     integer, intent(in) :: symmetry
 
     parts = product(merge(2, 1, is_halved(symmetry)))
@@ -133,7 +130,6 @@ contains
 
   !> Directions along which the model begins at the plate's centre.
   pure function is_halved(symmetry) result(halved)
-    !> Part that is modelled
     integer, intent(in) :: symmetry
     !> Along x and y
     logical :: halved(2)
@@ -144,7 +140,6 @@ contains
 
   !> Directions in which the plate is its own mirror image.
   pure function is_mirrored(symmetry) result(mirrored)
-    !> Part that is modelled
     integer, intent(in) :: symmetry
     !> Along x and y
     logical :: mirrored(2)

@@ -23,21 +23,18 @@ contains
 
   !> Line of nodes on the low border of a column or row of cells.
   elemental integer function first_line(cell) result(line)
-    !> Column or row, from 1
     integer, intent(in) :: cell
     line = 2*cell - 2
   end function first_line
 
   !> Line of nodes through the middle of a column or row of cells.
   elemental integer function middle_line(cell) result(line)
-    !> Column or row, from 1
     integer, intent(in) :: cell
     line = 2*cell - 1
   end function middle_line
 
   !> Line of nodes on the high border of a column or row of cells; of all cells: the grid's last line.
   elemental integer function last_line(cell) result(line)
-    !> Column or row, from 1
     integer, intent(in) :: cell
     line = 2*cell
   end function last_line
@@ -77,7 +74,6 @@ contains
   !> Column and row of a cell.
   pure function place_of(self, cell) result(place)
     class(nine_node_grid_t), intent(in) :: self
-    !> Cell
     integer, intent(in) :: cell
     !> Column and row, from 1
     integer :: place(2)
@@ -95,7 +91,6 @@ contains
   !> The two lines of nodes that cross at a node.
   pure function lines_of(self, node) result(lines)
     class(nine_node_grid_t), intent(in) :: self
-    !> Node
     integer, intent(in) :: node
     !> Lines of nodes of one x and of one y, 0 to twice the cells
     integer :: lines(2)
@@ -105,7 +100,6 @@ contains
   !> The nine nodes of a cell, tensor order.
   pure function cell_nodes(self, cell) result(nodes)
     class(nine_node_grid_t), intent(in) :: self
-    !> Cell
     integer, intent(in) :: cell
     !> Nodes
     integer :: nodes(9)

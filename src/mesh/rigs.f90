@@ -26,7 +26,6 @@ contains
   !> Coordinates along x or y of the edges of rectangular windows.
   pure function window_lines(supports, direction) result(lines)
     type(support_t), intent(in) :: supports(:)
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> Both edges of each
     real(wp), allocatable :: lines(:)
@@ -62,7 +61,6 @@ contains
   pure function circle_crossings(grid, support, cell) result(crossings)
     class(cell_grid_t), intent(in) :: grid
     type(support_t), intent(in) :: support
-    !> The cell
     integer, intent(in) :: cell
     type(crossing_t), allocatable :: crossings(:)
     integer :: place(2), nodes(9)

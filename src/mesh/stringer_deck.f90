@@ -81,7 +81,6 @@ contains
   subroutine fill_stringers(settings, length, all)
     !> Keys in effect; receives the defaults of keys left out
     type(settings_t), intent(inout) :: settings
-    !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
     type(stringer_t), allocatable, intent(out) :: all(:)
     real(wp) :: modulus
@@ -163,7 +162,6 @@ contains
   !> Checks names, places and sections.
   subroutine check_stringers(settings, length, is_heated, all, problems)
     type(settings_t), intent(in) :: settings
-    !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
     !> True: the plate expands with temperature
     logical, intent(in) :: is_heated
@@ -203,7 +201,6 @@ contains
   !> Checks that a stringer lies on the plate.
   subroutine check_place(settings, length, stringer, place, problems)
     type(settings_t), intent(in) :: settings
-    !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
     type(stringer_t), intent(in) :: stringer
     !> Its index

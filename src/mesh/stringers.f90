@@ -35,7 +35,6 @@ contains
     type(stringer_t), intent(in) :: stringers(:)
     !> Length of the plate along the direction
     real(wp), intent(in) :: length
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     real(wp), allocatable :: lines(:)
     integer :: i
@@ -84,7 +83,6 @@ contains
   pure logical function have_images(stringers, plate, symmetry, tolerance) result(alike)
     type(stringer_t), intent(in) :: stringers(:)
     type(plate_t), intent(in) :: plate
-    !> The symmetry
     integer, intent(in) :: symmetry
     !> Largest distance from the image, relative to the plate
     real(wp), intent(in) :: tolerance

@@ -126,7 +126,6 @@ contains
   subroutine check_parts(settings, support, place, problems)
     type(settings_t), intent(in) :: settings
     type(support_t), intent(in) :: support
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     logical :: circle
@@ -157,7 +156,6 @@ contains
     type(settings_t), intent(in) :: settings
     type(plate_t), intent(in) :: plate
     type(support_t), intent(in) :: support
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
 
@@ -175,7 +173,6 @@ contains
     type(settings_t), intent(in) :: settings
     type(plate_t), intent(in) :: plate
     type(support_t), intent(in) :: support
-    !> Index of the group
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     integer :: i
@@ -196,7 +193,6 @@ contains
   !> Checks that rigs support the plate without inertia.
   subroutine check_static_rigs(settings, symmetry, lines_hold, supports, problems)
     type(settings_t), intent(in) :: settings
-    !> Symmetry of the plate
     integer, intent(in) :: symmetry
     !> True: lines prescribe a deflection or a slope
     logical, intent(in) :: lines_hold
@@ -229,7 +225,6 @@ contains
   pure logical function turns_about(points, symmetry)
     !> Coordinates from the plate's centre, (2, points)
     real(wp), intent(in) :: points(:, :)
-    !> Symmetry of the plate
     integer, intent(in) :: symmetry
     real(wp) :: arms(2, size(points, 2)), along(2)
 

@@ -56,7 +56,6 @@ module composite_plates
     integer, allocatable :: zone(:)
     !> Laws and areas of the interfaces
     type(interface_laws_t) :: interfaces
-    !> The struck point
     type(struck_point_t) :: struck
   contains
     procedure :: place_of
@@ -73,7 +72,6 @@ contains
   !> Coordinates of one of this rank's points from the plate's centre.
   pure function place_of(self, point) result(place)
     class(composite_plate_t), intent(in) :: self
-    !> The point
     integer, intent(in) :: point
     real(wp) :: place(2)
 
@@ -95,7 +93,6 @@ contains
   !> Deflection at the struck point, the same on every rank.
   real(wp) function deflection(self, displacement) result(w)
     class(composite_plate_t), intent(in) :: self
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
     w = 0

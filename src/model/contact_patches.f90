@@ -33,7 +33,6 @@ contains
   real(wp) function mean(self, communicator, displacement)
     class(contact_patch_t), intent(in) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
     mean = total_of(communicator, self%weights(self%points)*displacement(3, self%points))
@@ -43,7 +42,6 @@ contains
   real(wp) function deflection(self, communicator, displacement)
     class(contact_patch_t), intent(in) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
     deflection = self%mean(communicator, displacement) + self%offset
@@ -68,7 +66,6 @@ contains
     class(contact_patch_t), intent(in) :: self
     !> The force on the modelled part
     real(wp), intent(in) :: force
-    !> Forces on the unknowns, (5, points)
     real(wp), intent(inout) :: forces(:, :)
     integer :: i
 

@@ -44,7 +44,6 @@ contains
   !> Checks that gauges lie on the plate.
   subroutine check_gauges(settings, length, all, problems)
     type(settings_t), intent(in) :: settings
-    !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
     type(gauge_t), intent(in) :: all(:)
     type(problems_t), intent(inout) :: problems

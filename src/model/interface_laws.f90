@@ -63,7 +63,6 @@ contains
   !> of a doubler.
   pure logical function beside_border(mesh, point)
     type(layered_mesh_t), intent(in) :: mesh
-    !> The point
     integer, intent(in) :: point
     integer :: line(2)
 

@@ -48,7 +48,6 @@ contains
   !> Value at a load factor.
   elemental real(wp) function at_factor(self, load_factor) result(value)
     class(line_load_t), intent(in) :: self
-    !> Ramps over their full values
     real(wp), intent(in) :: load_factor
 
     if (self%rise > 0) then
@@ -96,7 +95,6 @@ contains
   !> True: it constrains or displaces an end of the plate in its plane, in tension or compression.
   pure logical function is_end(self, length)
     class(line_load_t), intent(in) :: self
-    !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
     integer :: normal
 

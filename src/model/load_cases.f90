@@ -24,9 +24,7 @@ module load_cases
   type :: load_case_t
     !> Rigs under the plate; unallocated: none
     type(support_t), allocatable :: supports(:)
-    !> Impactor
     type(impactor_parameters_t) :: impactor
-    !> Pressure
     type(pressure_t) :: pressure
     !> Change of temperature
     type(thermal_t) :: thermal
@@ -34,7 +32,6 @@ module load_cases
     type(line_load_t), allocatable :: lines(:)
     !> Growth of the loads
     type(loading_t) :: loading
-    !> Initial state
     type(initial_state_t) :: initial
   contains
     procedure :: is_static
@@ -115,7 +112,6 @@ contains
   !> residual stresses or an initial state.
   elemental real(wp) function load_level(self, time)
     class(load_case_t), intent(in) :: self
-    !> Time, or progress of load steps from 0 to 1
     real(wp), intent(in) :: time
     real(wp) :: level
     integer :: i
@@ -140,7 +136,6 @@ contains
   !> Ramps of lines over their full values at a time of a run by central differences.
   pure real(wp) function load_factor_at(self, time) result(load_factor)
     class(load_case_t), intent(in) :: self
-    !> The time
     real(wp), intent(in) :: time
 
     load_factor = max(0.0_wp, time - self%loading%start)/self%loading%ramp_time
@@ -150,7 +145,6 @@ contains
   !> smoothly to zero until the loads start, and is constant without time for that.
   pure real(wp) function offset_left(self, time) result(left)
     class(load_case_t), intent(in) :: self
-    !> The time
     real(wp), intent(in) :: time
 
     left = 1

@@ -19,7 +19,6 @@ module models
   !> Model on this rank's part of the mesh, which is constant in a run. A procedure that needs a part of it takes that
   !> part.
   type :: model_t
-    !> The plate
     type(composite_plate_t) :: plate
     !> Pressure and lines
     type(plate_loads_t) :: loads
@@ -60,7 +59,6 @@ contains
   !> Internal forces at the owned points and strain energy of this rank's elements.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)
     class(model_t), intent(in) :: self
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: displacement(:, :)
@@ -92,7 +90,6 @@ contains
   !> Adds the internal forces of this rank's elements on the motion of their layers.
   subroutine add_elements(plate, stiffness, displacement, field, energy, law, free)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: displacement(:, :)

@@ -77,7 +77,6 @@ contains
   subroutine add_strain(plate, gauge, motion, total)
     type(composite_plate_t), intent(in) :: plate
     type(gauge_t), intent(in) :: gauge
-    !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
     !> Receives the strain
     type(exact_sum_t), intent(inout) :: total
@@ -108,7 +107,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> The gauge, on one of the surfaces
     type(gauge_t), intent(in) :: gauge
-    !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
     !> Index of the element among those of this rank
     integer, intent(in) :: element

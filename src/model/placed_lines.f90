@@ -63,10 +63,8 @@ contains
     type(layer_map_t), intent(in) :: map
     !> True for unknowns constrained by supports, (5, points of this rank)
     logical, intent(in) :: fixed(:, :)
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     type(section_t), intent(in) :: section
-    !> Symmetry of the model
     integer, intent(in) :: symmetry
     !> The line on this rank
     type(placed_line_t) :: self
@@ -141,7 +139,6 @@ contains
     type(placed_line_t), intent(inout) :: self
     type(layered_mesh_t), intent(in) :: mesh
     type(layer_map_t), intent(in) :: map
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> First point of the node, and its index on this rank
     integer, intent(in) :: first_point, local
@@ -208,9 +205,7 @@ contains
   !> Motion of a node of the line.
   pure real(wp) function motion_at(self, node, displacement) result(motion)
     class(placed_line_t), intent(in) :: self
-    !> Index of the node on this rank
     integer, intent(in) :: node
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     integer :: k
 
@@ -223,11 +218,8 @@ contains
   !> Total force of the line, for a node with weight 1.
   pure real(wp) function force_at(self, node, displacement, load_factor) result(force)
     class(placed_line_t), intent(in) :: self
-    !> Index of the node on this rank
     integer, intent(in) :: node
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Ramps over their full values
     real(wp), intent(in) :: load_factor
 
     force = self%load%at_factor(load_factor)
@@ -237,9 +229,7 @@ contains
   !> Adds the nodal forces of the line.
   pure subroutine add_forces(self, displacement, load_factor, forces)
     class(placed_line_t), intent(in) :: self
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Ramps over their full values
     real(wp), intent(in) :: load_factor
     !> Forces on the unknowns of the owned points, (5, points)
     real(wp), intent(inout) :: forces(:, :)
@@ -270,7 +260,6 @@ contains
   !> Adds the nodal forces that hold a line at zero displacement; none if it is not prescribed.
   pure subroutine add_holding_forces(self, displacement, forces)
     class(placed_line_t), intent(in) :: self
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Forces on the unknowns of the owned points, (5, points)
     real(wp), intent(inout) :: forces(:, :)
@@ -297,11 +286,9 @@ contains
   !> Adds a node's fraction of the total force of the line.
   pure subroutine spread(self, node, force, forces)
     type(placed_line_t), intent(in) :: self
-    !> Index of the node on this rank
     integer, intent(in) :: node
     !> Force of the full line
     real(wp), intent(in) :: force
-    !> Forces on the unknowns, (5, points)
     real(wp), intent(inout) :: forces(:, :)
     integer :: k
 
@@ -314,9 +301,7 @@ contains
   !> of ranks.
   pure function totals(self, displacement, load_factor)
     class(placed_line_t), intent(in) :: self
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Ramps over their full values
     real(wp), intent(in) :: load_factor
     !> Force of the full plate's line, sum of the motion of its nodes times their fraction, and fraction of excluded
     !> nodes

@@ -26,7 +26,6 @@ contains
   !> True if nothing is cut away.
   pure logical function is_whole(self, length)
     class(plate_cut_t), intent(in) :: self
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
 
     is_whole = all(abs(self%length - length) <= rounding*length)
@@ -35,7 +34,6 @@ contains
   !> True if it lies within a plate.
   pure logical function lies_within(self, length)
     class(plate_cut_t), intent(in) :: self
-    !> Lengths of the plate
     real(wp), intent(in) :: length(2)
 
     lies_within = all(self%length/2 + abs(self%centre) <= (0.5_wp + rounding)*length)
@@ -84,7 +82,6 @@ contains
     class(plate_cut_t), intent(in) :: self
     !> Mesh of the plate, or of its modelled part
     type(layered_mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     !> Intervals: cells or nodes
     procedure(parts_of_cells) :: parts_of

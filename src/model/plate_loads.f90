@@ -24,9 +24,7 @@ contains
   !> Nodal forces of the lines at the owned points, of all of them or of those that are prescribed or not.
   pure subroutine line_forces(self, displacement, load_factor, forces, prescribed)
     class(plate_loads_t), intent(in) :: self
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Ramps over their full values
     real(wp), intent(in) :: load_factor
     !> Forces on the unknowns, (5, points); ghosts zero
     real(wp), intent(out) :: forces(:, :)
@@ -46,7 +44,6 @@ contains
   !> Adds the nodal forces that hold prescribed lines at zero displacement.
   pure subroutine add_holding_lines(self, displacement, forces)
     class(plate_loads_t), intent(in) :: self
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Forces on the unknowns of the owned points, (5, points)
     real(wp), intent(inout) :: forces(:, :)
@@ -60,9 +57,7 @@ contains
   !> Nodal loads of a static analysis: pressure and lines, at the owned points.
   pure subroutine static_loads(self, displacement, load_factor, loads)
     class(plate_loads_t), intent(in) :: self
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Ramps over their full values
     real(wp), intent(in) :: load_factor
     !> Forces on the unknowns, (5, points); ghosts zero
     real(wp), intent(out) :: loads(:, :)

@@ -31,7 +31,6 @@ contains
   !> Pressure at a time over its full value.
   elemental real(wp) function amplitude(self, time)
     class(pressure_t), intent(in) :: self
-    !> Time
     real(wp), intent(in) :: time
 
     amplitude = 1

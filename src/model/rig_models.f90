@@ -194,7 +194,6 @@ contains
   !> Adds the forces of supported lines to their columns.
   pure subroutine add_to_columns(self, displacement, field, energy)
     class(rig_model_t), intent(in) :: self
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Forces, (5, columns)
     real(wp), intent(inout) :: field(:, :)
@@ -231,7 +230,6 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     type(plate_t), intent(in) :: plate
     type(support_t), intent(in) :: supports(:)
-    !> u, v, w, theta_x, theta_y of every point, (5, points)
     logical, intent(inout) :: fixed(:, :)
     logical, allocatable :: on_frame(:)
     integer, allocatable :: nodes(:)
@@ -261,7 +259,6 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     type(plate_t), intent(in) :: plate
     type(support_t), intent(in) :: supports(:)
-    !> u, v, w, theta_x, theta_y of every point, (5, points)
     logical, intent(inout) :: fixed(:, :)
     type(crossing_t), allocatable :: crossings(:)
     logical :: held(mesh%nodes())

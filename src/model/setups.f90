@@ -16,11 +16,9 @@ module setups
 
   !> A load case and its plate: geometry, mesh, laminate and damage.
   type, extends(load_case_t) :: setup_t
-    !> Plate
     type(plate_t) :: plate
     !> Mesh and element
     type(mesh_t) :: mesh
-    !> Materials
     type(material_t), allocatable :: materials(:)
     !> Stacking
     type(laminate_t) :: laminate

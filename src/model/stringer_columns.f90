@@ -60,7 +60,6 @@ contains
   !> Largest value of each column, and largest value with the other sign; at least 0. Collective.
   function ranges_of(plate, displacement) result(ranges)
     type(composite_plate_t), intent(in) :: plate
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (sign, column)
     real(wp), allocatable :: ranges(:, :)

@@ -51,7 +51,6 @@ contains
   !> The largest value in magnitude at each of this rank's elements.
   subroutine find_values(plate, displacement, values)
     type(composite_plate_t), intent(in) :: plate
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (column, element)
     real(wp), intent(out) :: values(:, :)

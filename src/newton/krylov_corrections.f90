@@ -28,7 +28,6 @@ contains
   !> Correction of the displacement for a residual, ghosts included. Collective.
   subroutine find_krylov_correction(tangent, residual, tolerance, correction, error, has_negative_curvature, converged)
     type(tangent_product_t), intent(inout) :: tangent
-    !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> Norm of the residual at the end over that at the start
     real(wp), intent(in) :: tolerance

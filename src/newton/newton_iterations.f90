@@ -43,9 +43,7 @@ contains
     type(model_t), target, intent(in) :: model
     type(equilibrium_t), intent(in) :: equilibrium
     type(tangent_operator_t), target, intent(in) :: operator
-    !> State at the start
     type(state_t), target, intent(in) :: old
-    !> State at the end
     type(state_t), target, intent(in) :: new
     type(newton_iteration_t) :: self
 

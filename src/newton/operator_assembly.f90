@@ -32,7 +32,6 @@ contains
   !> laminate. Both are then factorized separately, and the factors are half as large as one for both. Collective.
   logical function has_separate_membrane(model, stiffness, displacement) result(separate)
     type(model_t), intent(in) :: model
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement at which the tangent is taken, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -49,7 +48,6 @@ contains
   subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
                                diagonal)
     type(model_t), intent(in) :: model
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(numbering_t), intent(in) :: numbering
     !> Displacement at which the tangent is taken, (5, points)

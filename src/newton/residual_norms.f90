@@ -26,12 +26,10 @@ contains
     type(tangent_operator_t), intent(in) :: operator
     !> Tolerance of the residual, and constants of Newton's method
     type(equilibrium_t), intent(in) :: equilibrium
-    !> Residual at the owned points, (5, points)
     real(wp), contiguous, intent(in) :: residual(:, :)
     !> Sums of squares of the reference forces over this rank's points: translations and rotations, one column for each
     !> kind of forces
     real(wp), intent(in) :: references(:, :)
-    !> The unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> False: the iteration continues for any residual, so that the bound by round-off is not needed
     logical, intent(in) :: may_end
@@ -67,7 +65,6 @@ contains
   pure function round_off_forces(diagonal, displacement) result(forces)
     !> Diagonal of the operator, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
-    !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> The forces, (5, points)
     real(wp), allocatable :: forces(:, :)
@@ -84,7 +81,6 @@ contains
   pure function sums_of_squares(numbering, force) result(squares)
     !> Contains the constrained unknowns
     type(numbering_t), intent(in) :: numbering
-    !> Nodal forces, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)
@@ -103,7 +99,6 @@ contains
   pure function sums_without_masters(numbering, force) result(squares)
     !> Contains the constrained unknowns
     type(numbering_t), intent(in) :: numbering
-    !> Nodal forces, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)

@@ -76,7 +76,6 @@ module step_problems
     pure logical function may_stop(self, at)
       import :: step_problem_t, newton_iteration_t
       class(step_problem_t), intent(in) :: self
-      !> The iteration
       type(newton_iteration_t), intent(in) :: at
     end function may_stop
 
@@ -126,9 +125,7 @@ contains
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator; factorized again if convergence requires it
     type(tangent_operator_t), target, intent(inout) :: operator
-    !> State at the start
     type(state_t), target, intent(in) :: old
-    !> State at the end
     type(state_t), target, intent(inout) :: new
     !> True if equilibrium was reached
     logical, intent(out) :: converged
@@ -172,7 +169,6 @@ contains
   !> once they have.
   subroutine update_contact(problem, at, converged)
     class(step_problem_t), intent(in) :: problem
-    !> The iteration
     type(newton_iteration_t), intent(inout) :: at
     !> True: the step has converged
     logical, intent(out) :: converged
@@ -195,7 +191,6 @@ contains
   !> Accepts a fraction of the correction, or tries the next one.
   subroutine try_fraction(problem, at, search, ends)
     class(step_problem_t), intent(inout) :: problem
-    !> The iteration
     type(newton_iteration_t), intent(inout) :: at
     type(line_search_t), intent(inout) :: search
     !> True: the fraction is accepted
@@ -211,7 +206,6 @@ contains
   !> Residual with and without ties and contacts.
   subroutine find_forces(problem, at)
     class(step_problem_t), intent(inout) :: problem
-    !> The iteration
     type(newton_iteration_t), intent(inout) :: at
 
     call at%operator%timers%start('element forces')
@@ -226,7 +220,6 @@ contains
   !> Finds a correction, and starts the line search along it.
   subroutine correct(problem, at, search, corrected, error)
     class(step_problem_t), intent(inout) :: problem
-    !> The iteration
     type(newton_iteration_t), intent(inout) :: at
     type(line_search_t), intent(inout) :: search
     !> True: a correction was found

@@ -91,7 +91,6 @@ module stepping_parameters
   type :: stepping_t
     !> Time integration
     type(time_t) :: time
-    !> Central differences
     type(central_difference_parameters_t) :: central
     !> Adaptivity
     type(adapt_t) :: adapt

@@ -228,7 +228,6 @@ contains
   subroutine correct(self, plate, residual, correction, error)
     class(tangent_operator_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> Correction, (5, points)
     real(wp), intent(inout) :: correction(:, :)

@@ -223,7 +223,6 @@ contains
   !> Adds the forces on jumps.
   pure subroutine add_jumps(self, motion, force)
     class(tangent_product_t), intent(in) :: self
-    !> The motion, (5, points)
     real(wp), intent(in) :: motion(:, :)
     !> Forces at the owned points, (5, points)
     real(wp), intent(inout) :: force(:, :)

@@ -23,7 +23,6 @@ contains
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 3, 3, 4)
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Strains xz, yz at the Gauss points
     real(wp), intent(out) :: strains(lanes, 3, 3, 2)
@@ -53,7 +52,6 @@ contains
     real(wp), intent(in) :: inverse(lanes, 3, 3, 4)
     !> Shear forces xz, yz at the Gauss points, times their areas
     real(wp), intent(in) :: shear(lanes, 3, 3, 2)
-    !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
     real(wp) :: rows(lanes, 3, 3), columns(lanes, 3, 3), along_xi(lanes, 3, 3), along_eta(lanes, 3, 3)
     integer :: p, q, line, lane
@@ -86,7 +84,6 @@ contains
   pure subroutine sample_lines(tangents, r, offset, along, across, strains)
     !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Samples before the first of these, steps in node number along and across the lines
     integer, intent(in) :: offset, along, across
@@ -126,7 +123,6 @@ contains
     real(wp), intent(in) :: shear(lanes, 3, 3)
     !> Samples before the first of these, steps in node number along and across the lines
     integer, intent(in) :: offset, along, across
-    !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
     real(wp) :: total, half, minus, plus, x_minus, x_plus, y_minus, y_plus, sums(lanes, 3, 3)
     integer :: line, n1, n2, n3, s1, s2, lane

@@ -10,9 +10,7 @@ contains
 
   !> Turns membrane strains and curvatures into membrane forces and moments times the areas of the Gauss points.
   pure subroutine in_plane_resultants(c, weight, s, energies)
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains on entry, resultants on return (lane, point, component)
     real(wp), intent(inout) :: s(lanes, 9, 6)
@@ -49,9 +47,7 @@ contains
 
   !> Means of the strains of the elements of a batch.
   pure function element_means(weight, strains) result(means)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> The means, (lane, component)
     real(wp) :: means(lanes, 6)
@@ -103,7 +99,6 @@ contains
   pure subroutine add_free_energy(free, weight, s, energies)
     !> Resultants Nxx to Mxy of the stress-free strains, and their energy per area
     real(wp), intent(in) :: free(lanes, 7)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains (lane, point, component)
     real(wp), intent(in) :: s(lanes, 9, 6)
@@ -123,7 +118,6 @@ contains
   pure subroutine take_free_resultants(free, weight, s)
     !> Resultants Nxx to Mxy of the stress-free strains, and their energy per area
     real(wp), intent(in) :: free(lanes, 7)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Resultants times the areas (lane, point, component)
     real(wp), intent(inout) :: s(lanes, 9, 6)
@@ -140,7 +134,6 @@ contains
   pure subroutine shear_resultants(n, c, weight, s, energies)
     !> Number of shear points
     integer, intent(in) :: n
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
     !> Area of each shear point
     real(wp), intent(in) :: weight(lanes, n)

@@ -50,9 +50,7 @@ contains
   !> Turns displacements along a surface into those along the plan, to first order of its slopes.
   pure subroutine turn_into_plan(batches, b, r)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Unknowns of the nodes
     real(wp), intent(inout) :: r(lanes, 9, 5)
 
     if (.not. allocated(batches%surface_slopes)) return
@@ -65,9 +63,7 @@ contains
   !> Transpose of `turn_into_plan` for forces.
   pure subroutine turn_into_surface(batches, b, f)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
 
     if (.not. allocated(batches%surface_slopes)) return
@@ -80,7 +76,6 @@ contains
   !> not flat.
   pure logical function depends_on_slopes(batches, kinematics)
     type(element_batches_t), intent(in) :: batches
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
 
     depends_on_slopes = kinematics == kinematics_von_karman .or. allocated(batches%initial_slopes)
@@ -91,13 +86,9 @@ contains
   !> or grad(w0) grad(w) with linear strains.
   pure subroutine strains_of_batch(batches, b, kinematics, r, strains, slopes)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(out) :: strains(lanes, 9, 6)
     !> Slopes by which the membrane strains change with those of w (lane, point, direction): of w0 + w, or of w0 with
     !> linear strains; not set where the strains do not depend on slopes
@@ -124,13 +115,9 @@ contains
 
   !> Membrane strains and curvatures at the Gauss points of a batch.
   pure subroutine in_plane_strains(inverse, kinematics, r, strains, slopes)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(out) :: strains(lanes, 9, 6)
     !> Slopes w,x and w,y (lane, point, direction), set for von Karman's strains only
     real(wp), intent(out) :: slopes(lanes, 9, 2)
@@ -154,11 +141,9 @@ contains
 
   !> Derivatives of a field with respect to x and y at the Gauss points.
   pure subroutine gradient(inverse, field, slopes)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> Values at the nodes
     real(wp), intent(in) :: field(lanes, 9)
-    !> (lane, point, direction)
     real(wp), intent(out) :: slopes(lanes, 9, 2)
     real(wp) :: along(lanes, 9, 2)
 
@@ -169,7 +154,6 @@ contains
 
   !> Adds the nodal forces of membrane forces and moments at the Gauss points.
   pure subroutine add_in_plane_forces(inverse, sloped, resultants, slopes, f)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> True: membrane strains depend on the slopes of w
     logical, intent(in) :: sloped
@@ -177,7 +161,6 @@ contains
     real(wp), intent(in) :: resultants(lanes, 9, 6)
     !> Slopes by which they change, used in this case only
     real(wp), intent(in) :: slopes(lanes, 9, 2)
-    !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
     real(wp) :: along(lanes, 9, 2), x_force, y_force
     integer :: g, lane
@@ -198,7 +181,6 @@ contains
 
   !> Strains x,x y,y x,y + y,x of a vector field at the Gauss points.
   pure subroutine plane_strains(inverse, x_field, y_field, strains)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> The two components of the field at the nodes
     real(wp), intent(in) :: x_field(lanes, 9), y_field(lanes, 9)
@@ -221,7 +203,6 @@ contains
 
   !> Transpose of `plane_strains`.
   pure subroutine add_plane_forces(inverse, stresses, x_force, y_force)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> Stresses conjugate to the strains
     real(wp), intent(in) :: stresses(lanes, 9, 3)
@@ -245,9 +226,7 @@ contains
   !> Transverse shear strains of a batch at its shear points.
   pure subroutine shear_strains(batches, b, r, strains)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Strains xz, yz (lane, point, component)
     real(wp), intent(out) :: strains(lanes, batches%shear_points, 2)
@@ -262,11 +241,9 @@ contains
   !> Adds the nodal forces of transverse shear forces at the shear points of a batch.
   pure subroutine add_shear_forces(batches, b, shear, f)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
     !> Shear forces xz, yz, times the areas of the points
     real(wp), intent(in) :: shear(lanes, batches%shear_points, 2)
-    !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
 
     if (batches%shear == shear_assumed) then

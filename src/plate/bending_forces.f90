@@ -18,7 +18,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
-    !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
@@ -80,9 +79,7 @@ contains
 
   !> Turns curvatures into moments times the areas of the Gauss points.
   pure subroutine moments(c, weight, s, energies)
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Curvatures on entry, moments on return (lane, point, component)
     real(wp), intent(inout) :: s(lanes, 9, 3)
@@ -108,7 +105,6 @@ contains
   pure subroutine gather_bending(points, u, r)
     !> Point of each node
     integer, intent(in) :: points(lanes, 9)
-    !> Unknowns of all points
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Unknowns of the nodes (lane, node, component); the first two components are not changed
     real(wp), intent(inout) :: r(lanes, 9, 5)

@@ -141,7 +141,6 @@ contains
     type(stringer_section_t), intent(in) :: section
     !> z of the centroid
     real(wp), intent(in) :: height
-    !> Direction
     integer, intent(in) :: along
     !> Length times share
     real(wp), intent(in) :: length

@@ -105,7 +105,6 @@ contains
   !> Gives one element its section.
   pure subroutine set_section(self, element, stiffness, mass)
     class(element_batches_t), intent(inout) :: self
-    !> Number of the element
     integer, intent(in) :: element
     !> Section stiffness and mass, as in the components of the type
     real(wp), intent(in) :: stiffness(21), mass(3)
@@ -131,7 +130,6 @@ contains
   !> Lanes of a batch that hold elements: all but in the last batch.
   pure integer function lanes_used(self, b)
     class(element_batches_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
 
     lanes_used = min(lanes, self%elements - (b - 1)*lanes)
@@ -140,7 +138,6 @@ contains
   !> True if there are beams on edges of a batch.
   pure logical function has_beams(self, b)
     class(element_batches_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
 
     has_beams = .false.
@@ -149,7 +146,6 @@ contains
 
   !> Batch that holds an element.
   elemental integer function batch_of(element)
-    !> Number of the element
     integer, intent(in) :: element
 
     batch_of = 1 + (element - 1)/lanes
@@ -157,7 +153,6 @@ contains
 
   !> Lane of its batch that holds an element.
   elemental integer function lane_of(element)
-    !> Number of the element
     integer, intent(in) :: element
 
     lane_of = 1 + mod(element - 1, lanes)
@@ -165,7 +160,6 @@ contains
 
   !> Element in the first lane of a batch; those in the other lanes follow it.
   pure integer function first_element(b)
-    !> Number of the batch
     integer, intent(in) :: b
 
     first_element = (b - 1)*lanes + 1

@@ -20,11 +20,9 @@ contains
   !> stiffness_factor * tangent stiffness + mass_factor * consistent mass of the elements of a batch.
   subroutine tangent(batches, b, stiffness, kinematics, u, stiffness_factor, mass_factor, k, free)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
     !> Section stiffness of the damaged plies in the batch (lanes, 21)
     real(wp), intent(in) :: stiffness(:, :)
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
     !> Unknowns (5, points), used where strains depend on slopes only
     real(wp), contiguous, intent(in) :: u(:, :)
@@ -61,7 +59,6 @@ contains
 
   !> Makes a matrix symmetric, of which the blocks of node pairs a <= b are known.
   pure subroutine copy_upper_triangle(k)
-    !> Matrix (lane, row, column)
     real(wp), intent(inout) :: k(lanes, 45, 45)
     integer :: row, column
 
@@ -76,7 +73,6 @@ contains
   pure subroutine turn_matrix(slopes, k)
     !> Slopes of the surface at the nodes (lane, node, direction)
     real(wp), intent(in) :: slopes(lanes, 9, 2)
-    !> Stiffness (lane, row, column)
     real(wp), intent(inout) :: k(lanes, 45, 45)
     integer :: node, i
 
@@ -99,9 +95,7 @@ contains
 
   !> Adds the linear membrane, bending and coupling stiffness to the blocks of node pairs a <= b.
   subroutine add_linear_tangent(c, weight, x_slopes, y_slopes, k)
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Derivatives of the shape functions with respect to x and y (lane, point, node)
     real(wp), intent(in) :: x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9)
@@ -130,7 +124,6 @@ contains
 
   !> Integrals of the products of the slopes of two shape functions.
   pure subroutine slope_products(weight, ax, ay, bx, by, products)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Slopes of the shape functions of nodes a and b at the Gauss points
     real(wp), intent(in) :: ax(lanes, 9), ay(lanes, 9), bx(lanes, 9), by(lanes, 9)
@@ -173,7 +166,6 @@ contains
   subroutine add_mass(mass, weight, k)
     !> Section mass I0, I1, I2
     real(wp), intent(in) :: mass(lanes, 3)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Matrix (lane, row, column), added to
     real(wp), intent(inout) :: k(lanes, 45, 45)

@@ -11,13 +11,10 @@ contains
 
   !> Adds these terms to the blocks of node pairs a <= b.
   subroutine add_geometric_tangent(c, weight, x_slopes, y_slopes, slopes, forces, k)
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Derivatives of the shape functions with respect to x and y (lane, point, node)
     real(wp), intent(in) :: x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9)
-    !> Slopes w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> Membrane forces Nxx, Nyy, Nxy times the areas; moments follow and are not used
     real(wp), intent(in) :: forces(lanes, 9, 6)
@@ -44,13 +41,10 @@ contains
 
   !> Adds the geometric stiffness between w and w: membrane stiffness through the slopes, and membrane forces.
   subroutine add_slope_stiffness(c, weight, x_slopes, y_slopes, slopes, forces, k)
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Derivatives of the shape functions with respect to x and y (lane, point, node)
     real(wp), intent(in) :: x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9)
-    !> Slopes w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> Membrane forces Nxx, Nyy, Nxy times the areas; moments follow and are not used
     real(wp), intent(in) :: forces(lanes, 9, 6)
@@ -89,11 +83,9 @@ contains
     real(wp), intent(in) :: c(lanes, 6)
     !> First row of the coupling that is added to: 1 for u, v, 3 for the rotations
     integer, intent(in) :: first
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Derivatives of the shape functions with respect to x and y (lane, point, node)
     real(wp), intent(in) :: x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9)
-    !> Slopes w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> Stiffness of (u, v, theta_x, theta_y) of node a against w of node b (lane, component, a, b)
     real(wp), intent(inout) :: coupling(lanes, 4, 9, 9)

@@ -45,7 +45,6 @@ contains
   pure subroutine momenta(mass, weight, values)
     !> Section mass I0, I1, I2
     real(wp), intent(in) :: mass(lanes, 3)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Accelerations on entry, forces on return (lane, point, component)
     real(wp), intent(inout) :: values(lanes, 9, 5)

@@ -16,7 +16,6 @@ contains
     integer, intent(in) :: n
     !> Derivatives xi,x eta,x xi,y eta,y at the points
     real(wp), intent(in) :: inverse(lanes, n, 4)
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Strains xz, yz
     real(wp), intent(out) :: strains(lanes, n, 2)
@@ -43,7 +42,6 @@ contains
     real(wp), intent(in) :: inverse(lanes, n, 4)
     !> Shear forces xz, yz, times the areas of the points
     real(wp), intent(in) :: shear(lanes, n, 2)
-    !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
     real(wp) :: x_slopes(lanes, n, 9), y_slopes(lanes, n, 9), values(9, n)
     integer :: a, g, lane

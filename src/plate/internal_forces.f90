@@ -20,9 +20,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
@@ -78,9 +76,7 @@ contains
   !> Passes the strains of sections with a common state to a law. Collective.
   subroutine share_strains(batches, kinematics, u, law)
     type(element_batches_t), intent(in) :: batches
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
     class(section_law_t), intent(inout) :: law
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2)
@@ -99,9 +95,7 @@ contains
   !> are measured along their surface.
   pure subroutine batch_force(batches, b, c, r)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
     !> Unknowns of the nodes on entry, forces on them on return (lane, node, component)
     real(wp), intent(inout) :: r(lanes, 9, 5)
@@ -125,9 +119,7 @@ contains
   !> strains by it.
   pure subroutine turn_into_forces(batches, b, c, sloped, slopes, strains, r, energies, free)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
     !> True: membrane strains depend on the slopes of w
     logical, intent(in) :: sloped

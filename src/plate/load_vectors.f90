@@ -42,7 +42,6 @@ contains
   !> Adds the integrals of the shape functions of one element times a function given at its Gauss points.
   pure subroutine add_nodal_shares(batches, element, values, shares)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the element
     integer, intent(in) :: element
     !> Function at the Gauss points
     real(wp), intent(in) :: values(9)

@@ -15,9 +15,7 @@ contains
   pure subroutine gather(points, u, r)
     !> Point of each node
     integer, intent(in) :: points(lanes, 9)
-    !> Unknowns of all points
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Unknowns of the nodes (lane, node, component)
     real(wp), intent(out) :: r(lanes, 9, 5)
     integer :: lane, a
 

@@ -23,11 +23,8 @@ module section_laws
       import :: section_law_t, wp, lanes
       !> The law; stores the trial state
       class(section_law_t), intent(inout) :: self
-      !> Number of the batch
       integer, intent(in) :: b
-      !> Area of each Gauss point
       real(wp), intent(in) :: weight(lanes, 9)
-      !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
       real(wp), intent(in) :: strains(lanes, 9, 6)
       !> Section stiffness: that of the last trial on entry, that of this one on return
       real(wp), intent(inout) :: stiffness(lanes, 21)
@@ -41,7 +38,6 @@ contains
   !> True for a batch with elements that soften by common strains, which must be known before any section softens.
   pure logical function needs_joined_strains(self, b)
     class(section_law_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
 
     needs_joined_strains = .false.
@@ -50,11 +46,8 @@ contains
   !> Adds the trial strains of a batch to the common strains.
   subroutine accumulate_strains(self, b, weight, strains)
     class(section_law_t), intent(inout) :: self
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
   end subroutine accumulate_strains
 

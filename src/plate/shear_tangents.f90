@@ -14,11 +14,8 @@ contains
   !> Adds the shear stiffness of a batch to the blocks of node pairs a <= b.
   subroutine add_shear_tangent(batches, b, c, k)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> Stiffness (lane, row, column)
     real(wp), intent(inout) :: k(lanes, 45, 45)
 
     if (batches%shear == shear_assumed) then
@@ -34,9 +31,7 @@ contains
   subroutine add_assumed_tangent(tangents, inverse, weight, s, k)
     !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Shear stiffness
     real(wp), intent(in) :: s(lanes, 3)
@@ -101,9 +96,7 @@ contains
 
   !> Stiffness that links the samples of the assumed strains.
   pure subroutine sample_stiffness(inverse, weight, s, samples)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Shear stiffness
     real(wp), intent(in) :: s(lanes, 3)

@@ -15,7 +15,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch, and one of the kinematics_* choices
     integer, intent(in) :: b, kinematics
-    !> Unknowns of the nodes (lane, node, component)
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Forces on them, and energies of the lanes
     real(wp), intent(inout) :: f(lanes, 9, 5), energies(lanes)
@@ -38,7 +37,6 @@ contains
     integer, intent(in) :: b, kinematics
     !> Unknowns of the nodes, and their motion
     real(wp), intent(in) :: r(lanes, 9, 5), motion(lanes, 9, 5)
-    !> Forces on them
     real(wp), intent(inout) :: f(lanes, 9, 5)
     real(wp) :: force(45)
     integer :: k
@@ -57,7 +55,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch, and one of the kinematics_* choices
     integer, intent(in) :: b, kinematics
-    !> Unknowns of the nodes
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
@@ -79,11 +76,9 @@ contains
   !> Adds the consistent mass of the beams of a batch times accelerations.
   pure subroutine add_beam_inertia(batches, b, a, f)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
     !> Accelerations of the nodes (lane, node, component)
     real(wp), intent(in) :: a(lanes, 9, 5)
-    !> Forces on them
     real(wp), intent(inout) :: f(lanes, 9, 5)
     real(wp) :: force(5, 9)
     integer :: k
@@ -125,7 +120,6 @@ contains
 
   !> Unknowns of one element in the order of its matrix.
   pure function row_of(r, lane) result(row)
-    !> (lane, node, component)
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Lane of the element
     integer, intent(in) :: lane

@@ -16,11 +16,8 @@ contains
   !> Strains at the 3x3 Gauss points of a batch.
   subroutine gauss_strains(batches, b, kinematics, u, strains)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Strains (lane, point, component)
     real(wp), intent(out) :: strains(lanes, 9, 8)
@@ -44,11 +41,8 @@ contains
   !> nodes: at the front of a square delamination of four cells per side they gave an energy release rate 8 % too low.
   subroutine nodal_strains(batches, b, kinematics, u, strains)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Strains (lane, node, component)
     real(wp), intent(out) :: strains(lanes, 9, 8)
@@ -64,11 +58,8 @@ contains
   !> Mean strains over the area of each element of a batch.
   subroutine mean_strains(batches, b, kinematics, u, strains)
     type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
     integer, intent(in) :: b
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Strains (lane, component); zero in unused lanes
     real(wp), intent(out) :: strains(lanes, 8)

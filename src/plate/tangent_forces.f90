@@ -20,7 +20,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
-    !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
     !> Unknowns at which the tangent is taken, and the motion (5, points)
     real(wp), contiguous, intent(in) :: u(:, :), v(:, :)
@@ -88,7 +87,6 @@ contains
 
   !> Adds the forces on w by membrane forces times the change of the slopes (geometric stiffness).
   pure subroutine add_turned_forces(inverse, forces, change, f)
-    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> Membrane forces Nxx, Nyy, Nxy and moments, times the areas of the points
     real(wp), intent(in) :: forces(lanes, 9, 6)

@@ -18,9 +18,7 @@ contains
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, as exact sums.
   pure function dissipated_in_trial(states, plies, area, touched) result(energies)
-    !> States of the plies
     type(band_states_t), intent(in) :: states
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Area of each element
     real(wp), intent(in) :: area(:)
@@ -47,9 +45,7 @@ contains
 
   !> Energy dissipated so far in each mode and by permanent shear, as exact sums.
   pure function dissipated_so_far(states, plies, bands, area, touched) result(energies)
-    !> States of the plies
     type(band_states_t), intent(in) :: states
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Their laws
     type(crack_band_t), intent(in) :: bands(:)
@@ -79,9 +75,7 @@ contains
   !> Volume of plies with a cracked matrix, and its integral of the factor of their strengths by the strain rate, as
   !> exact sums.
   pure function strengthened_so_far(states, plies, area) result(sums)
-    !> States of the plies
     type(band_states_t), intent(in) :: states
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Area of each element
     real(wp), intent(in) :: area(:)
@@ -102,13 +96,10 @@ contains
 
   !> Change of the section of a damaged element against its mean strains.
   pure function changed_by_signs(plies, bands, states, element, means) result(change)
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Their laws
     type(crack_band_t), intent(in) :: bands(:)
-    !> States of the plies
     type(band_states_t), intent(in) :: states
-    !> The element
     integer, intent(in) :: element
     !> Its mean strains
     real(wp), intent(in) :: means(6)
@@ -131,13 +122,10 @@ contains
 
   !> Resultants of the stress-free strains of an element in the trial.
   pure function resultants_without_strain(plies, bands, states, element, closing) result(resultants)
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Their laws
     type(crack_band_t), intent(in) :: bands(:)
-    !> States of the plies
     type(band_states_t), intent(in) :: states
-    !> The element
     integer, intent(in) :: element
     !> True: with the stresses that closed cracks carry
     logical, intent(in) :: closing

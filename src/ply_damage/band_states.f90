@@ -86,7 +86,6 @@ contains
   !> Accepts the trial states of one element.
   pure subroutine accept(self, element)
     class(band_states_t), intent(inout) :: self
-    !> Element of this rank
     integer, intent(in) :: element
 
     associate (first => self%offset(element) + self%range(1, element), &
@@ -98,7 +97,6 @@ contains
   !> Accepted states of an element.
   pure function of_element(self, element) result(states)
     class(band_states_t), intent(in) :: self
-    !> Element of this rank
     integer, intent(in) :: element
     !> Of its plies
     type(band_state_t) :: states(self%range(2, element) - self%range(1, element) + 1)
@@ -109,7 +107,6 @@ contains
   !> True if a ply of an element has damage in the accepted state.
   pure logical function damaged(self, element)
     class(band_states_t), intent(in) :: self
-    !> Element of this rank
     integer, intent(in) :: element
 
     damaged = any(is_damaged(self%of_element(element)))

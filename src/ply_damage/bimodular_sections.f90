@@ -54,7 +54,6 @@ contains
   !> Takes over the reduced constants of the plies of an element.
   subroutine reduce(self, element, constants, tensile)
     class(bimodular_sections_t), intent(inout) :: self
-    !> Element of this rank
     integer, intent(in) :: element
     !> Its constants in tension
     type(elasticity_t), intent(in) :: constants(:)
@@ -70,11 +69,8 @@ contains
   subroutine soften(self, b, weight, strains, stiffness, free)
     !> The sections; store the resultants
     class(bimodular_sections_t), intent(inout) :: self
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(lanes, 21)
@@ -99,7 +95,6 @@ contains
   !> Change of the section of an element with failed plies.
   pure function change_of(self, element, means) result(change)
     type(bimodular_sections_t), intent(in) :: self
-    !> Element of this rank
     integer, intent(in) :: element
     !> Its mean strains
     real(wp), intent(in) :: means(6)

@@ -142,7 +142,6 @@ contains
   !> True for a batch with elements that share their state.
   pure logical function needs_joined_strains(self, b)
     class(crack_band_sections_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
 
     needs_joined_strains = self%joined%concerned(b)
@@ -151,11 +150,8 @@ contains
   !> Accumulates the strains of elements that share their state.
   subroutine accumulate_strains(self, b, weight, strains)
     class(crack_band_sections_t), intent(inout) :: self
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     real(wp) :: sizes(lanes, 2), moments(lanes, moment_values)
     integer :: lane, element
@@ -225,7 +221,6 @@ contains
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness, changed)
     class(crack_band_sections_t), intent(inout) :: self
-    !> Element of this rank
     integer, intent(in) :: element
     !> Its strains
     type(strain_moments_t), intent(in) :: moments
@@ -317,7 +312,6 @@ contains
   !> Accepts the trial state, and returns the sections of changed elements.
   pure subroutine commit_sections(self, stiffness, free)
     class(crack_band_sections_t), intent(inout) :: self
-    !> Section stiffness, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
     !> Resultants of stress-free strains, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable, intent(inout) :: free(:, :, :)

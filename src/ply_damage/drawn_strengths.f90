@@ -88,7 +88,6 @@ contains
   pure integer(long) function weakest_of(seed, ply, squares) result(hash)
     !> Of the deck
     integer, intent(in) :: seed
-    !> Number of the ply
     integer, intent(in) :: ply
     !> First and last column of squares, then of rows
     integer, intent(in) :: squares(2, 2)
@@ -105,7 +104,6 @@ contains
   !> The squares of an element; elements that share their damage have one strength, that of all their squares.
   pure function squares_of(plate, element, joined) result(squares)
     type(composite_plate_t), intent(in) :: plate
-    !> Element of this rank
     integer, intent(in) :: element
     !> True along x and y if it shares its damage with the element beyond its side
     logical, intent(in) :: joined(2)

@@ -37,7 +37,6 @@ contains
     type(ply_failure_t), intent(in) :: failures
     !> Result of element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> s11, s22, s12, s13, s23 in the ply's mid-plane, on its top and on its bottom; zero in elements without
     !> this ply, (5, 3, elements)

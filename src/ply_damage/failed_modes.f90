@@ -41,7 +41,6 @@ contains
   subroutine find(self, plate, stiffness, displacement, found)
     class(failed_modes_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -83,7 +82,6 @@ contains
   pure function elasticities(self, plate, element) result(elasticity)
     class(failed_modes_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Element of this rank
     integer, intent(in) :: element
     !> Constants of the element's plies
     type(elasticity_t), allocatable :: elasticity(:)

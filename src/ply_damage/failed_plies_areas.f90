@@ -66,7 +66,6 @@ contains
   !> False for elements without failed plies.
   pure logical function may_have_failed(failures, element)
     type(ply_failure_t), intent(in) :: failures
-    !> Element of this rank
     integer, intent(in) :: element
 
     may_have_failed = .true.

@@ -169,7 +169,6 @@ contains
   pure subroutine insert(list, element)
     !> The list
     integer, intent(inout) :: list(most)
-    !> The element
     integer, intent(in) :: element
     integer :: smaller
 
@@ -182,7 +181,6 @@ contains
   !> True where an element shares its state with others.
   pure logical function shares(self, element)
     class(joined_elements_t), intent(in) :: self
-    !> Element of this rank
     integer, intent(in) :: element
 
     shares = self%number(element) > 0
@@ -256,7 +254,6 @@ contains
   !> Separates an element from those joined with it, which must be separated as well.
   pure subroutine separate(self, element)
     class(joined_elements_t), intent(inout) :: self
-    !> Element of this rank
     integer, intent(in) :: element
 
     self%separated(element) = .true.
@@ -334,7 +331,6 @@ contains
   !> Upper bounds of the strains of all plies of a batch, and of all elements with a common state.
   pure function joined_bounds(self, b, bounds) result(joined)
     class(joined_elements_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
     !> Of each element
     real(wp), intent(in) :: bounds(lanes)
@@ -357,7 +353,6 @@ contains
   !> Moments of the strains of a batch, means over all elements with a common state.
   pure function joined_moments(self, b, moments) result(joined)
     class(joined_elements_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
     !> Of each element, from `strain_moments`
     real(wp), intent(in) :: moments(lanes, moment_values)

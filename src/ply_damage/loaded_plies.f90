@@ -98,9 +98,7 @@ contains
   !> Updates the plies of an element to their accepted states.
   pure subroutine update(self, element, bands, states)
     class(loaded_plies_t), intent(inout) :: self
-    !> Element of this rank
     integer, intent(in) :: element
-    !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
     type(band_states_t), intent(in) :: states
     integer :: ply
@@ -145,7 +143,6 @@ contains
   !> False for elements in which no ply loses stiffness.
   pure function may_soften(self, b, moments) result(loaded)
     class(loaded_plies_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
     !> Moments of the strains of its elements, or their means over those that share their state, from `strain_moments`
     real(wp), intent(in) :: moments(lanes, moment_values)

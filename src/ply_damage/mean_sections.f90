@@ -111,7 +111,6 @@ contains
   !> Finds the compressed sub-plies of the undamaged elements of a batch; sections change where a sign changes.
   pure subroutine update(self, b, means, undamaged)
     class(mean_sections_t), intent(inout) :: self
-    !> Number of the batch
     integer, intent(in) :: b
     !> Mean strains of its elements, (lanes, 6)
     real(wp), intent(in) :: means(lanes, 6)
@@ -158,7 +157,6 @@ contains
   !> Sets the change of the section of a damaged element.
   pure subroutine set_element(self, element, change)
     class(mean_sections_t), intent(inout) :: self
-    !> Element of this rank
     integer, intent(in) :: element
     !> The change
     real(wp), intent(in) :: change(change_values)
@@ -170,7 +168,6 @@ contains
   !> Adds the stiffness of undamaged sub-plies in compression where it exceeds that in tension: an upper bound.
   pure subroutine add_excess(self, stiffness)
     class(mean_sections_t), intent(in) :: self
-    !> Section stiffness, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
     integer :: b, lane, k
 
@@ -188,7 +185,6 @@ contains
   !> Contribution of the mean strains to the resultants of stress-free strains of a batch.
   pure function resultants(self, b, means)
     class(mean_sections_t), intent(in) :: self
-    !> Number of the batch
     integer, intent(in) :: b
     !> Mean strains of its elements, (lanes, 6)
     real(wp), intent(in) :: means(lanes, 6)

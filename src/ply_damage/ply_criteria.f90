@@ -18,9 +18,7 @@ contains
   !> and Hashin.
   function failure_measures(plate, stiffness, element, elasticity, strains) result(measures)
     type(composite_plate_t), intent(in) :: plate
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Element of this rank
     integer, intent(in) :: element
     !> Present elastic constants of its plies
     type(elasticity_t), intent(in) :: elasticity(:)
@@ -49,9 +47,7 @@ contains
 
   !> Shear forces of an element, Q = S gamma.
   pure function shear_force(stiffness, element, strain) result(force)
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Element of this rank
     integer, intent(in) :: element
     !> Mean shear strains gxz, gyz of the element
     real(wp), intent(in) :: strain(2)

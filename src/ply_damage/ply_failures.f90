@@ -222,7 +222,6 @@ contains
   pure function failed_in_elements(self, plate, ply) result(failed)
     class(ply_failure_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> True for failed modes, (modes, elements); false in elements without this ply
     logical :: failed(failure_modes, plate%elements%elements)
@@ -253,7 +252,6 @@ contains
   !> strength does not depend on it.
   pure real(wp) function stressed_volume(self, ply) result(volume)
     class(ply_failure_t), intent(in) :: self
-    !> Ply of the laminate
     integer, intent(in) :: ply
 
     volume = 0
@@ -265,7 +263,6 @@ contains
   pure function strained_plies(self, plate, element) result(plies)
     class(ply_failure_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Element of this rank
     integer, intent(in) :: element
     type(ply_t), allocatable :: plies(:)
     integer :: i
@@ -293,7 +290,6 @@ contains
   pure function elasticities(self, plate, element)
     class(ply_failure_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Element of this rank
     integer, intent(in) :: element
     !> Those of the element's plies
     type(elasticity_t), allocatable :: elasticities(:)
@@ -331,7 +327,6 @@ contains
   subroutine soften(self, plate, element)
     type(ply_failure_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> Element of this rank
     integer, intent(in) :: element
 
     associate (stack => plate%layup%stacks(plate%layup%stack(element)))

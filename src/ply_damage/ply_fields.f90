@@ -92,7 +92,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Softening plies
     type(crack_band_sections_t), intent(in) :: bands
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> (1, elements)
     real(wp) :: crushed(1, plate%elements%elements)
@@ -110,7 +109,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Softening plies
     type(crack_band_sections_t), intent(in) :: bands
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> (1, elements)
     real(wp) :: strengths(1, plate%elements%elements)
@@ -129,7 +127,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> From 0 to 1, (2, elements)
     real(wp) :: lost(2, plate%elements%elements)

@@ -28,11 +28,8 @@ contains
     type(joined_elements_t), intent(in) :: joined
     !> True for elements with damage in the trial, (elements)
     logical, intent(in) :: touched(:)
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     real(wp) :: resultants(lanes, 7)
     real(wp) :: means(lanes, 6)

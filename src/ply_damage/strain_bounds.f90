@@ -13,9 +13,7 @@ contains
   !> Root mean squares of the membrane strains and of the curvatures of a batch over each element's area, in the measure
   !> of `onset_strain`. At a distance z from the middle surface strains are at most the first plus z times the second.
   pure function strain_sizes(weight, strains) result(sizes)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> (lane, membrane and curvature)
     real(wp) :: sizes(lanes, 2)
@@ -36,9 +34,7 @@ contains
 
   !> Means over each element of its strains and of their products.
   pure function strain_moments(weight, strains) result(moments)
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> In the order of `moments_from`
     real(wp) :: moments(lanes, moment_values)

@@ -59,7 +59,6 @@ contains
   !> Volumes of plies without load.
   function new_stressed_volumes(plate, bands, states) result(self)
     type(composite_plate_t), intent(in) :: plate
-    !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
     !> States of the plies of all elements
     type(band_states_t), intent(in) :: states
@@ -92,7 +91,6 @@ contains
   !> A strain below which no ply contributes to the volume of a block, in the measure of `onset_strain`.
   pure real(wp) function smallest_strain(self, bands) result(strain)
     class(stressed_volumes_t), intent(in) :: self
-    !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
     real(wp) :: share
     integer :: i
@@ -114,7 +112,6 @@ contains
   !> Tensile strength of a ply over XT; 1 as long as its fibres have not been in tension.
   pure real(wp) function factor(self, ply)
     class(stressed_volumes_t), intent(in) :: self
-    !> The ply
     integer, intent(in) :: ply
 
     factor = 1
@@ -136,7 +133,6 @@ contains
   !> Stressed volume of the block of a ply when its fibres failed first; 0: they have not failed.
   pure real(wp) function volume_at_failure(self, ply) result(volume)
     class(stressed_volumes_t), intent(in) :: self
-    !> The ply
     integer, intent(in) :: ply
 
     associate (block => self%block(findloc(self%number, ply, dim=1)))
@@ -147,7 +143,6 @@ contains
   !> Sets the stresses of some elements to zero.
   pure subroutine clear(self, states, first, last)
     class(stressed_volumes_t), intent(inout) :: self
-    !> Damage of the plies
     type(band_states_t), intent(in) :: states
     !> First and last element of this rank
     integer, intent(in) :: first, last
@@ -159,9 +154,7 @@ contains
   subroutine update(self, communicator, states, plies, area, multiplicity)
     class(stressed_volumes_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Damage of the plies
     type(band_states_t), intent(in) :: states
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Area of each element of this rank
     real(wp), intent(in) :: area(:)
@@ -187,7 +180,6 @@ contains
   !> Largest stress of each block on this rank, and whether its fibres have failed.
   pure subroutine find_extremes(self, states, extremes)
     type(stressed_volumes_t), intent(in) :: self
-    !> Damage of the plies
     type(band_states_t), intent(in) :: states
     !> Stress, and 1 where fibres have failed, of the blocks that begin with each ply, (plies, 2)
     real(wp), intent(out) :: extremes(:, :)
@@ -208,9 +200,7 @@ contains
   !> Adds the volumes of the plies of this rank's elements, weighted by their stresses.
   pure subroutine add_volumes(self, states, plies, area, largest, sums)
     type(stressed_volumes_t), intent(in) :: self
-    !> Damage of the plies
     type(band_states_t), intent(in) :: states
-    !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Area of each element
     real(wp), intent(in) :: area(:)

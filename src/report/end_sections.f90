@@ -61,7 +61,6 @@ contains
   pure real(wp) function modulus_of(setup, laminate, along) result(modulus)
     type(setup_t), intent(in) :: setup
     type(laminate_t), intent(in) :: laminate
-    !> 1 for x, 2 for y
     integer, intent(in) :: along
     type(section_t) :: section
     real(wp) :: compliance(3, 3)

@@ -104,7 +104,6 @@ contains
   pure function numbered(rows, number) result(names)
     !> Rows of the table
     character(len=*), intent(in) :: rows(:)
-    !> The number
     integer, intent(in) :: number
     !> One per row
     character(len=result_name_length) :: names(size(rows))

@@ -149,7 +149,6 @@ contains
   !> A value of some kind with its unit; times of load steps have none.
   pure function with_unit(self, value, kind, digits) result(words)
     class(results_t), intent(in) :: self
-    !> The value
     real(wp), intent(in) :: value
     !> Kind of unit
     character(len=*), intent(in) :: kind

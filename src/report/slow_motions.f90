@@ -66,7 +66,6 @@ contains
   !> True once a part of the loading has passed, after which kinetic energies are checked.
   pure logical function has_developed(deck, time)
     type(deck_t), intent(in) :: deck
-    !> The time
     real(wp), intent(in) :: time
 
     has_developed = time - deck%setup%loading%start > slow_start*(deck%stepping%time%end - deck%setup%loading%start)

@@ -27,7 +27,6 @@ module checkpoints
   type, extends(archive_t) :: checkpoint_archive_t
     !> The run that wrote the file, after opening for loading
     type(provenance_t) :: provenance
-    !> The file
     type(hdf5_file_t), private :: file
     !> Final path of the file
     character(len=:), allocatable, private :: path

@@ -37,7 +37,6 @@ module fields_file
     character(len=:), allocatable :: name
     !> Modelled part of the plate: whole, quarter, half_x, half_y or point
     character(len=:), allocatable :: part
-    !> The HDF5 file
     type(hdf5_file_t) :: file
     !> Table of the fields, one row each; unallocated: they have no units
     character(len=result_row_length), allocatable :: rows(:)
@@ -209,7 +208,6 @@ contains
   !> Starts a time.
   subroutine begin(self, time, step, error)
     class(fields_file_t), intent(inout) :: self
-    !> The time
     real(wp), intent(in) :: time
     !> Number of the time step
     integer, intent(in) :: step

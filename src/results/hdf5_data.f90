@@ -223,7 +223,6 @@ contains
   !> Columns that this rank writes of an array known to every rank: all on the first rank.
   pure function shares_of_root(file, extents) result(columns)
     type(hdf5_file_t), intent(in) :: file
-    !> Extents of the array
     integer, intent(in) :: extents(:)
     integer, allocatable :: columns(:)
 
@@ -233,7 +232,6 @@ contains
 
   !> All columns of an array.
   pure function all_columns(extents) result(columns)
-    !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
     integer, allocatable :: columns(:)
     integer :: i

@@ -46,7 +46,6 @@ contains
     integer(hid_t), intent(in) :: native_type
     !> Address of this rank's columns in memory, contiguous
     type(c_ptr), intent(in) :: address
-    !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
     !> Columns (along the last extent, from 1, ascending) of this rank
     integer, intent(in) :: columns(:)
@@ -105,7 +104,6 @@ contains
 
   !> Describes an array in the file with this rank's columns chosen, and those columns in memory.
   subroutine make_spaces(extents, columns, space, memory)
-    !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
     !> Columns of this rank (from 1, ascending)
     integer, intent(in) :: columns(:)

@@ -39,7 +39,6 @@ contains
 
   !> One row as text: the shortest texts that read back as the same numbers.
   pure function row(values, whole, widths) result(line)
-    !> The numbers
     real(wp), intent(in) :: values(:)
     !> Integer columns
     logical, intent(in) :: whole(:)

@@ -29,7 +29,6 @@ contains
   !> Time of the next event: the earliest of some clocks, or the end if it coincides with it.
   pure real(wp) function next_event(clocks, end, closest) result(event)
     type(clock_t), intent(in) :: clocks(:)
-    !> End of the run
     real(wp), intent(in) :: end
     !> Distance up to which events coincide, >= 0
     real(wp), intent(in) :: closest

@@ -32,7 +32,6 @@ contains
 
   !> One cell of a row.
   pure function cell(row, number) result(content)
-    !> The row
     character(len=*), intent(in) :: row
     !> Number of the cell, from 1
     integer, intent(in) :: number
@@ -107,7 +106,6 @@ contains
   pure function name_with_number(pattern, number) result(name)
     !> Such as area_below_N
     character(len=*), intent(in) :: pattern
-    !> The number
     integer, intent(in) :: number
     !> Such as area_below_3; the pattern itself if it has no N between underscores
     character(len=:), allocatable :: name
@@ -154,7 +152,6 @@ contains
 
   !> Number of cells of a row.
   pure integer function cells_of(row)
-    !> The row
     character(len=*), intent(in) :: row
     integer :: i
 
@@ -202,7 +199,6 @@ contains
 
     !> A row with its cells filled up to the widths.
     pure function padded(row) result(line)
-      !> The row
       character(len=*), intent(in) :: row
       character(len=:), allocatable :: line
       integer :: k

@@ -96,7 +96,6 @@ contains
   !> without membrane forces.
   elemental real(wp) function deflection_of(self, energy) result(deflection)
     class(plate_spring_t), intent(in) :: self
-    !> The energy
     real(wp), intent(in) :: energy
     real(wp) :: low, high
     integer :: i

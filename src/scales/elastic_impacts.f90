@@ -53,7 +53,6 @@ contains
     type(modal_plate_t), intent(in) :: plate
     type(impactor_parameters_t), intent(in) :: impactor
     type(indentation_law_t), intent(in) :: law
-    !> Step
     real(wp), intent(in) :: step
     !> Largest number of steps
     integer, intent(in) :: max_steps

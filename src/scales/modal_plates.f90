@@ -42,7 +42,6 @@ contains
 
   !> Modes of a plate up to a frequency, and the static compliance of all higher modes.
   pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff, shape) result(plate)
-    !> Lengths of the full plate along x and y
     real(wp), intent(in) :: length(2)
     !> Supports at x-min, x-max, y-min, y-max
     integer, intent(in) :: edges(4)

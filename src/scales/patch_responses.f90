@@ -50,7 +50,6 @@ contains
   !> A plate at rest.
   pure function start_response(plate, step, steps, to_the_end) result(self)
     type(modal_plate_t), intent(in) :: plate
-    !> Step
     real(wp), intent(in) :: step
     !> Largest number of steps
     integer, intent(in) :: steps

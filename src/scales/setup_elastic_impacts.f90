@@ -15,7 +15,6 @@ module setup_elastic_impacts
 
   !> A setup prepared for preliminary elastic impacts.
   type :: setup_elastic_impact_t
-    !> The setup
     type(setup_t) :: setup
     !> Its scales
     type(setup_scales_t) :: scales
@@ -25,7 +24,6 @@ module setup_elastic_impacts
 
   !> Expected results of a run with the mesh and step of the deck.
   type :: expected_scales_t
-    !> Scales of the setup
     type(setup_scales_t) :: scales
     !> True: there is an impact, and the other components are valid
     logical :: of_impact = .false.
@@ -95,7 +93,6 @@ contains
   !> A preliminary elastic impact with a given step; `complete` is false if it would take too many steps.
   pure function run_of(self, step, end, cell) result(run)
     type(setup_elastic_impact_t), intent(in) :: self
-    !> Step
     real(wp), intent(in) :: step
     !> End; 0: that of the contact
     real(wp), intent(in) :: end
@@ -249,7 +246,6 @@ contains
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)
-    !> The step
     real(wp), intent(out) :: step
     real(wp), intent(out) :: error(2)
     type(elastic_impact_t) :: finest, coarse
@@ -289,7 +285,6 @@ contains
   !> The largest elements with errors within bounds.
   pure function largest_cell(self, step, end, bounds, follows) result(cell)
     type(setup_elastic_impact_t), intent(in) :: self
-    !> Step
     real(wp), intent(in) :: step
     !> End of the time considered
     real(wp), intent(in) :: end

@@ -99,7 +99,6 @@ contains
     type(stringer_t), intent(in) :: stringers(:)
     !> The span
     type(plate_part_t), intent(in) :: whole
-    !> 1 for x, 2 for y
     integer, intent(in) :: along
     real(wp), allocatable :: lines(:)
     real(wp) :: next
@@ -179,7 +178,6 @@ contains
   pure function lines_within(setup, part, direction) result(lines)
     type(setup_t), intent(in) :: setup
     type(plate_part_t), intent(in) :: part
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     real(wp), allocatable :: lines(:)
 
@@ -194,7 +192,6 @@ contains
     type(ply_zones_t), intent(in) :: zones
     !> Length of the plate along the direction
     real(wp), intent(in) :: length
-    !> 1 for x, 2 for y
     integer, intent(in) :: direction
     real(wp), allocatable :: lines(:)
     real(wp), allocatable :: edges(:)

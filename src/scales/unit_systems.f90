@@ -66,7 +66,6 @@ contains
 
   !> Length, mass and time of a system, in metres, kilograms and seconds.
   pure function base_units(system) result(base)
-    !> Index of the system
     integer, intent(in) :: system
     real(wp) :: base(3)
 
@@ -86,9 +85,7 @@ contains
   pure logical function is_unusual(quantity, value, system)
     !> Kind of the quantity
     integer, intent(in) :: quantity
-    !> The value
     real(wp), intent(in) :: value
-    !> Index of the system
     integer, intent(in) :: system
 
     is_unusual = .not. in_range(quantity, value*size_of(quantity, unit_name(quantity, system)))
@@ -98,7 +95,6 @@ contains
   pure function unit_that_fits(quantity, value) result(name)
     !> Kind of the quantity
     integer, intent(in) :: quantity
-    !> The value
     real(wp), intent(in) :: value
     !> Symbol of the unit
     character(len=:), allocatable :: name
@@ -119,7 +115,6 @@ contains
   pure function unit_name(quantity, system) result(name)
     !> Kind of the quantity
     integer, intent(in) :: quantity
-    !> Index of the system
     integer, intent(in) :: system
     character(len=:), allocatable :: name
 
@@ -130,7 +125,6 @@ contains
   pure integer function decades_of(quantity, system) result(decades)
     !> Kind of the quantity
     integer, intent(in) :: quantity
-    !> Index of the system
     integer, intent(in) :: system
 
     decades = nint(log10(size_of(quantity, unit_name(quantity, system))))

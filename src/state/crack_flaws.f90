@@ -61,7 +61,6 @@ contains
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
@@ -98,7 +97,6 @@ contains
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> Cells in which a crack affects an interface of the ply, (cells of the mesh)
     logical, intent(in) :: reachable(:)
@@ -129,7 +127,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
-    !> Ply of the laminate
     integer, intent(in) :: ply
     !> (cells of the mesh)
     logical, allocatable :: cracked(:)

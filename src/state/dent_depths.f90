@@ -53,7 +53,6 @@ contains
   !> along directions of symmetry. Collective.
   subroutine find_plane(plate, displacement, plane, is_known)
     type(composite_plate_t), intent(in) :: plate
-    !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Height at the struck point and slopes along x and y
     real(wp), intent(out) :: plane(3)

@@ -13,7 +13,6 @@ module impact_states
 
   !> State of the impact.
   type :: impact_state_t
-    !> The impactor
     type(impactor_t) :: impactor
     !> History variables of the indentation
     type(indentation_t) :: indentation

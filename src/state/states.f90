@@ -44,7 +44,6 @@ module states
     type(impact_state_t) :: impact
     !> Failures of the plies and the reduced stiffness
     type(ply_failure_t) :: plies
-    !> The interfaces
     type(interface_state_t) :: interfaces
     !> Reactions of prescribed lines of the full plate in explicit steps, (lines)
     real(wp), allocatable :: line_reactions(:)
@@ -134,7 +133,6 @@ contains
     !> The state with its displacement; receives the forces
     class(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The last accepted state
     type(state_t), intent(in) :: old
     !> Strain energy
     real(wp), intent(out) :: energy

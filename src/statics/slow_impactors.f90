@@ -115,7 +115,6 @@ contains
   !> Travel of the impactor for the force and the deflection of a state.
   real(wp) function travel_for(plate, new) result(travel)
     type(composite_plate_t), intent(in) :: plate
-    !> The state
     type(state_t), intent(in) :: new
 
     travel = indentation_of(plate%setup%impactor%indentation, new%impact%indentation, new%impact%force) + &

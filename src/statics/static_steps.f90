@@ -101,7 +101,6 @@ contains
   !> A change of multipliers may be below the tolerance of the residual; it needs a correction nevertheless.
   pure logical function may_stop(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration
     type(newton_iteration_t), intent(in) :: at
 
     may_stop = .not. at%multipliers_changed
@@ -173,7 +172,6 @@ contains
   !> Load steps have no velocity to be completed.
   subroutine complete(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration
     type(newton_iteration_t), intent(inout) :: at
   end subroutine complete
 

@@ -83,7 +83,6 @@ contains
   subroutine advance(self, model, event, error)
     class(explicit_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> Never set: an unstable motion is found when the state is completed
     type(error_t), allocatable, intent(out) :: error
@@ -97,7 +96,6 @@ contains
     class(explicit_stepper_t), intent(inout) :: self
     type(model_t), intent(inout) :: model
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     logical, intent(out) :: switched
     !> Set if the model cannot be built
@@ -239,7 +237,6 @@ contains
   !> The remaining steps, if their length does not change.
   pure real(wp) function left(self, end)
     class(explicit_stepper_t), intent(in) :: self
-    !> End of the run
     real(wp), intent(in) :: end
 
     left = max(0.0_wp, end - self%now%time)
@@ -249,7 +246,6 @@ contains
   !> Number of steps of the whole run.
   pure integer function expected_steps(self, end)
     class(explicit_stepper_t), intent(in) :: self
-    !> End of the run
     real(wp), intent(in) :: end
 
     expected_steps = nint(self%done() + self%left(end))

@@ -21,10 +21,8 @@ contains
 
   !> Takes one step. Collective.
   subroutine advance_explicit(method, model, event, now)
-    !> Central differences
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
-    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     type(state_t), intent(inout) :: now
     real(wp) :: kept
@@ -48,7 +46,6 @@ contains
 
   !> Lets damage grow again in a plate that has come to rest.
   subroutine release_damage(method, model, now)
-    !> Central differences
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: now
@@ -60,7 +57,6 @@ contains
   !> True while damping brings the plate to rest: before lines or an impactor begin to load it, or once the impactor has
   !> left the plate and moves away.
   pure logical function is_damped(method, model, now)
-    !> Central differences
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
@@ -72,7 +68,6 @@ contains
 
   !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.
   subroutine complete_step(method, model, now, error)
-    !> Central differences
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: now

@@ -93,7 +93,6 @@ contains
   subroutine find_step(self, model, event, step, shortest, error)
     class(implicit_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Step found
     real(wp), intent(out) :: step

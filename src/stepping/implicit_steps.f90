@@ -31,7 +31,6 @@ module implicit_steps
 
   !> Data of implicit steps. It has many components because each part of the step control has its own.
   type, abstract, extends(stepper_t) :: implicit_steps_t
-    !> The step controller
     type(step_controller_t) :: controller
     !> Error estimate of steps
     type(step_error_t) :: step_error
@@ -41,7 +40,6 @@ module implicit_steps
     logical :: is_error_controlled = .false.
     !> True: the error of the last step exceeds the tolerance at the shortest step
     logical :: error_exceeded = .false.
-    !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Steps in time or by load
     class(step_kind_t), allocatable :: kind
@@ -75,7 +73,6 @@ module implicit_steps
       !> The stepper; its trial state is that at the end of the step
       class(implicit_steps_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
-      !> Time, or load factor, that must not be exceeded
       real(wp), intent(in) :: event
       !> Step tried
       real(wp), intent(out) :: step

@@ -44,7 +44,6 @@ contains
     class(load_steps_t), intent(in) :: self
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Load factor that must not be exceeded
     real(wp), intent(in) :: event
     real(wp), intent(out) :: step
     logical, intent(out) :: converged

@@ -52,7 +52,6 @@ contains
     class(motion_steps_t), intent(in) :: self
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     real(wp), intent(out) :: step
     logical, intent(out) :: converged

@@ -13,7 +13,6 @@ module step_memories
     private
     !> The state
     type(state_t) :: now
-    !> The controller
     type(step_controller_t) :: controller
     !> The estimate of the error
     type(step_error_t) :: step_error

@@ -72,7 +72,6 @@ module steppers
       import :: stepper_t, model_t, error_t, wp
       class(stepper_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      !> Time, or load factor, that must not be exceeded
       real(wp), intent(in) :: event
       !> Set if the smallest step failed
       type(error_t), allocatable, intent(out) :: error
@@ -85,7 +84,6 @@ module steppers
       !> The model; receives larger zones
       type(model_t), intent(inout) :: model
       type(linear_solver_parameters_t), intent(in) :: linear_solver
-      !> Time, or load factor, that must not be exceeded
       real(wp), intent(in) :: event
       !> True if layers were inserted
       logical, intent(out) :: switched
@@ -235,7 +233,6 @@ contains
   !> The remainder of a run, in the same unit.
   pure real(wp) function left(self, end)
     class(stepper_t), intent(in) :: self
-    !> End of the run
     real(wp), intent(in) :: end
 
     left = max(0.0_wp, end - self%now%time)
@@ -244,7 +241,6 @@ contains
   !> Number of steps of the whole run; 0: unknown.
   pure integer function expected_steps(self, end)
     class(stepper_t), intent(in) :: self
-    !> End of the run
     real(wp), intent(in) :: end
 
     expected_steps = 0

@@ -33,7 +33,10 @@ SPELLINGS = {
 # Arguments with one meaning in all of the program, which need no documentation.
 COMMON_ARGUMENTS = {"self", "model", "deck", "settings", "problems", "now", "archive", "log", "error", "law"}
 # Arguments that their names explain where they have no documentation.
-NAMED_ARGUMENTS = {"group", "key", "name", "path", "word"}
+NAMED_ARGUMENTS = {
+    "group", "key", "name", "path", "word", "point", "number", "line", "row", "part", "distance", "matrix", "method", "rank",
+    "summary", "text", "option", "message", "area", "radius", "energy", "tolerance",
+}
 # Names in a list of arguments that are none of those to document.
 NO_ARGUMENTS = {"", "*", "self", "this"}
 # A comment of a common argument that says more, such as what is changed in it, has more words than this.
@@ -167,23 +170,42 @@ def names_and_type(text):
     return [re.match(r"\w*", entity).group() for entity in split_top(found.group(3))], of_type
 
 
-def needs_no_doc(text):
-    """Whether name and type of an argument say what it is."""
+def conventions():
+    """Meanings by name and declared type, shape included, of the table of names in doc/architecture.md."""
+    page = (Path(__file__).parents[2] / "doc" / "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`\w+`(?:, `\w+`)*) \| `([^`]*)` \| (.*) \|$", page, re.MULTILINE)
+    return {(name, kind): words_of(meaning) for names, kind, meaning in rows for name in re.findall(r"\w+", names)}
+
+
+def meaning_of(text):
+    """The words of the meaning that the table of names gives to an argument; None: it has none there."""
+    found = DECLARATION.match(text)
+    entities = split_top(found.group(3)) if found else []
+    if len(entities) != 1:
+        return None
+    name, shape = re.match(r"(\w+)\s*(\(.*\))?", entities[0]).groups()
+    kind = re.match(r"\w+(?:\s*\([\w=*: ]*\))?", text).group().replace("(wp)", "")
+    return CONVENTIONS.get((name, kind + (shape or "").replace(" ", "")))
+
+
+def needs_no_doc(text, is_argument):
+    """Whether name and type of an argument or component say what it is, or the table of names does."""
     names, of_type = names_and_type(text)
     known = words_of(of_type.replace("_", " "))
-    return all(name in COMMON_ARGUMENTS | NAMED_ARGUMENTS or words_of(name.replace("_", " ")) <= known
-               for name in names)
+    common = COMMON_ARGUMENTS | NAMED_ARGUMENTS if is_argument else set()
+    return is_argument and meaning_of(text) is not None or all(
+        name in common or words_of(name.replace("_", " ")) <= known for name in names)
 
 
-def is_redundant(text, doc):
-    """Whether the documentation of an argument or result says no more than name and type."""
+def is_redundant(text, doc, is_argument):
+    """Whether documentation says no more than name, type and the table of names."""
     names, of_type = names_and_type(text)
     if len(names) != 1:
         return False
-    if names[0] in COMMON_ARGUMENTS and len(re.findall(r"\w+", doc)) <= MAX_COMMON_WORDS:
+    if is_argument and names[0] in COMMON_ARGUMENTS and len(re.findall(r"\w+", doc)) <= MAX_COMMON_WORDS:
         return True
-    known = words_of(names[0].replace("_", " ")) | words_of(of_type.replace("_", " "))
-    return needs_no_doc(text) and words_of(doc) <= known
+    meaning = meaning_of(text) if is_argument else None
+    return words_of(doc) <= words_of(names[0].replace("_", " ")) | words_of(of_type.replace("_", " ")) | (meaning or set())
 
 
 def doc_above(lines, line):
@@ -205,6 +227,9 @@ def deferred_arguments(checkers):
         if len(arguments) > 1:
             found.add(arguments)
     return found
+
+
+CONVENTIONS = conventions()
 
 
 class Checker:
@@ -361,6 +386,14 @@ class Checker:
         if not statement.documented:
             self.report(statement.line, f"{what} has no !> documentation above it")
 
+    def check_doc(self, statement, what, is_deferred=False):
+        """Check that a component or an argument is documented where its name and type do not say all, and only there."""
+        is_argument = what.startswith("argument")
+        if not (is_deferred or needs_no_doc(statement.text, is_argument)):
+            self.require_doc(statement, what)
+        elif statement.documented and is_redundant(statement.text, doc_above(self.lines, statement.line), is_argument):
+            self.report(statement.line, f"the documentation of {what} says no more than name and type")
+
     def check_declaration(self, statement, scope):
         """Check a declaration by its scope."""
         found = DECLARATION.match(statement.text)
@@ -370,7 +403,7 @@ class Checker:
         names = [re.match(r"\w*", entity).group() for entity in entities]
         constant = re.search(r"\bparameter\b", attributes)
         if scope.kind == "type" and not found.group(1).startswith("procedure"):
-            self.require_doc(statement, f"component {', '.join(names)}")
+            self.check_doc(statement, f"component {', '.join(names)}")
             scope.components += len(names)
         elif scope.kind == "module" and not constant:
             self.report(statement.line, f"module variable {', '.join(names)}")
@@ -380,10 +413,7 @@ class Checker:
                     self.report(statement.line, f"{name} is initialised where it is declared, so it is saved")
         if scope.kind == "procedure" and scope.arguments.intersection(names):
             is_deferred = frozenset(scope.arguments) in self.deferred and self.scopes[-2].kind != "interface"
-            if not (is_deferred or needs_no_doc(statement.text)):
-                self.require_doc(statement, f"argument {', '.join(names)}")
-            elif is_redundant(statement.text, doc_above(self.lines, statement.line)) and statement.documented:
-                self.report(statement.line, f"the documentation of {names[0]} says no more than name and type")
+            self.check_doc(statement, f"argument {', '.join(names)}", is_deferred)
 
 
 def folder_breaches(folder, files):

@@ -55,28 +55,28 @@ module good
 contains
 
   !> Twice a value.
-  pure real(wp) function double(value, shape) result(twice)
-    !> The value
-    real(wp), intent(in) :: value
+  pure real(wp) function double(amount, shape) result(twice)
+    !> What is doubled
+    real(wp), intent(in) :: amount
     !> Shape, which goes &
     !> on
     integer, intent(in), &
       optional :: shape(:)
-    real(wp) :: save_it(merge(2, 1, value == 1))
+    real(wp) :: save_it(merge(2, 1, amount == 1))
     integer, parameter :: two = 2
     integer :: i
 
-    if (value > 0) save_it(1) = 1
+    if (amount > 0) save_it(1) = 1
     where (save_it > 0) save_it = 1
     outer: do i = 1, 2
       select case (i)
       case (1)
-        twice = two*value
+        twice = two*amount
       case default
         if (i == 2) exit outer
       end select
     end do outer
-    associate (v => value)
+    associate (v => amount)
       if (v > 0 .and. &
           v < 1) then
         twice = v
@@ -97,12 +97,13 @@ contains
   end subroutine set_square
 
   !> Sizes of things.
-  subroutine list(thing, sizes, log)
+  subroutine list(thing, sizes, log, along)
     class(thing_t), intent(in) :: thing
     !> Sizes, m
     real(wp), intent(out) :: sizes(:)
     !> Receives a line for each thing
     integer, intent(in) :: log
+    integer, intent(in) :: along
 
     sizes = thing%size
   end subroutine list
@@ -132,21 +133,26 @@ BREACHES = {
     "procedure doc": ("  !> Twice a value.\n", "", "function double has no"),
     "interface doc": ("    !> Area of a thing.\n", "", "function measure has no"),
     "argument doc of an interface": ("      !> Along x\n", "", "argument length has no"),
-    "argument doc": ("    !> The value\n", "", "argument value has no"),
-    "plain comment is no doc": ("    !> The value\n", "    ! The value\n", "argument value has no"),
+    "argument doc": ("    !> What is doubled\n", "", "argument amount has no"),
+    "plain comment is no doc": ("    !> What is doubled\n", "    ! The value\n", "argument amount has no"),
     "doc of an argument of another type": ("    !> Sizes, m\n", "", "argument sizes has no"),
     "doc that repeats the type": (
         "    class(thing_t), intent(in) :: thing\n",
         "    !> The thing\n    class(thing_t), intent(in) :: thing\n",
-        "the documentation of thing says no more",
+        "the documentation of argument thing says no more",
     ),
-    "doc of a common argument": ("Receives a line for each thing", "The log", "the documentation of log says no more"),
+    "doc that repeats the table of names": (
+        "    integer, intent(in) :: along\n",
+        "    !> 1 for x, 2 for y\n    integer, intent(in) :: along\n",
+        "the documentation of argument along says no more",
+    ),
+    "doc of a common argument": ("Receives a line for each thing", "The log", "the documentation of argument log says no more"),
     "indent": ("        twice = 3", "       twice = 3", "indented by 7, not 8"),
     "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 60 lines"),
     "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
     "many components": ("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n", "has 16 components, more than 15"),
     "spelling": ("!> A thing.\n", "!> A Factorised thing.\n", "another name or spelling of factorization"),
-    "selector": ("v => value", "v => self%list(self%area(i))%size", "area is called within the selector"),
+    "selector": ("v => amount", "v => self%list(self%area(i))%size", "area is called within the selector"),
     "march": ("    !> Size\n", "    !> The march\n", "another name or spelling of time stepping"),
 }
 
