@@ -18,6 +18,7 @@ contains
   !> The nearest number of 15 digits if it reads back as the same double, otherwise that of 16 digits, otherwise that of
   !> 17.
   pure subroutine find_shortest(value, digits, exponent, known)
+    !> The number, > 0
     real(wp), intent(in) :: value
     !> Its digits as an integer
     integer(long), intent(out) :: digits

@@ -156,7 +156,7 @@ def initialised(entity):
 
 def words_of(text):
     """The words of a text or of a Fortran name without plurals and words that say nothing."""
-    return {word.rstrip("s") for word in re.findall(r"[a-z]+", text.lower())} - FILLERS
+    return {word.rstrip("s") for word in re.findall(r"[a-z]+|[<>]", text.lower())} - FILLERS
 
 
 def names_and_type(text):
