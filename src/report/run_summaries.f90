@@ -77,7 +77,7 @@ contains
     end do
     if (model%plate%communicator%is_root()) &
       call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, given, &
-                                               ending_of(error), provenance, seconds), fault)
+                                               ending_of(error), provenance, model%plate%profile, seconds), fault)
     call model%plate%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault
   end subroutine summarise

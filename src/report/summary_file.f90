@@ -11,7 +11,7 @@ module summary_file
   use laminate_parameters, only: laminate_t
   use output_clocks, only: shown_time
   use output_deck, only: key_force_filter
-  use profiles, only: profile_row_t
+  use profiles, only: profile_row_t, profile_t
   use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
   use run_provenance, only: provenance_t
@@ -30,7 +30,7 @@ module summary_file
 contains
 
   !> The summary as JSON.
-  function summary_text(deck, stepper, record, results, figures, errors, given, ending, provenance, seconds) &
+  function summary_text(deck, stepper, record, results, figures, errors, given, ending, provenance, profile, seconds) &
     result(content)
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
@@ -43,6 +43,7 @@ contains
     type(line_t), intent(in) :: given(:)
     type(ending_t), intent(in) :: ending
     type(provenance_t), intent(in) :: provenance
+    type(profile_t), intent(in) :: profile
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
     character(len=:), allocatable :: content
@@ -65,7 +66,7 @@ contains
     call put_plies(json, deck, figures)
     call put_warnings(json, deck, record, given)
     call put_costs(json, stepper, seconds)
-    call put_profile(json, stepper%operator%timers%profile%rows())
+    call put_profile(json, profile%rows())
     call put_provenance(json, provenance)
     call json%finished(content)
   end function summary_text
