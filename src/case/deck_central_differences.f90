@@ -6,6 +6,7 @@ module deck_central_differences
   use deck_problems, only: problems_t
   use deck_remarks, only: report
   use element_steps, only: smallest_element_step
+  use explicit_costs, only: expected_steps
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
   use kinds, only: wp
@@ -25,7 +26,7 @@ module deck_central_differences
                        time_group
   implicit none
   private
-  public :: choose_for_central_differences, find_stable_step
+  public :: choose_for_central_differences, choose_rows, find_stable_step
 
   !> Largest factor of in-plane and rotary inertia that is chosen. It also slows membrane waves by its root, which no
   !> estimate covers: with 10 they cross the plate in 3.2 times the time.
@@ -110,7 +111,7 @@ contains
     call deck%settings%derive(time_group, key_mass_scaling, short_text(chosen%scaling), .false.)
   end subroutine choose_scaling
 
-  !> Finds the stable step for preliminary elastic impacts, costs and the number of rows; the run computes its own.
+  !> Finds the stable step for preliminary elastic impacts and costs; the run computes its own.
   subroutine find_stable_step(deck, problems)
     !> The deck, its mesh checked; receives the step
     type(deck_t), intent(inout) :: deck
@@ -137,11 +138,18 @@ contains
     if (.not. deck%settings%is_given(time_group, key_step)) &
       call deck%settings%derive(time_group, key_step, short_text(step), .false.)
     call check_narrow_cells(deck, problems)
-    if (deck%settings%is_given(output_group, key_history_every)) return
-    deck%output%steps_between_rows = max(1, nint(deck%stepping%time%end/deck%stepping%time%step/rows))
+  end subroutine find_stable_step
+
+  !> Chooses the number of steps between rows of the history by the steps that are expected in the run.
+  subroutine choose_rows(deck)
+    !> The deck, its expected results known
+    type(deck_t), intent(inout) :: deck
+
+    if (deck%settings%is_given(output_group, key_history_every) .or. .not. deck%stepping%time%step > 0) return
+    deck%output%steps_between_rows = max(1, nint(expected_steps(deck)/rows))
     call append(deck%reasons, 'A row of the history every '// &
                 counted(to_text(deck%output%steps_between_rows), 'step')//'; peaks are found from every step.')
-  end subroutine find_stable_step
+  end subroutine choose_rows
 
   !> Shortens the step for the contact of an impactor so light that the force rises faster than the waves of the plate.
   !> The stable step allows for the contact stiffness so far, which is zero before the first step by Hertz' law.

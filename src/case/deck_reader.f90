@@ -2,7 +2,7 @@
 module deck_reader
   use deck_accuracy, only: check_left_out
   use deck_cell_growth, only: check_cell_growth
-  use deck_central_differences, only: find_stable_step
+  use deck_central_differences, only: choose_rows, find_stable_step
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
   use deck_cross_checks, only: check_across_groups
@@ -101,11 +101,12 @@ contains
     call check_interfaces(deck, problems)
     call check_correction(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)
-    call check_force_filter(deck, problems)
     if (deck%setup%ply_damage%is_present) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     call set_flaws(deck, problems)
     call check_scales(deck, problems)
+    if (deck%has_time .and. is_explicit(deck%stepping) .and. problems%errors() == 0) call choose_rows(deck)
+    call check_force_filter(deck, problems)
     call check_softening_steps(deck, problems)
     call check_units(deck, vocabulary, problems)
     if (problems%errors() == 0) call note_symmetry(deck)

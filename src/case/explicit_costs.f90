@@ -18,7 +18,7 @@ module explicit_costs
   use usual_units, only: in_usual_unit, time_kind
   implicit none
   private
-  public :: explicit_sentence, duration_text, untaken_step
+  public :: expected_steps, explicit_sentence, duration_text, untaken_step
 
 contains
 
@@ -27,13 +27,12 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_size_t), intent(in) :: model_size
     character(len=:), allocatable :: sentence
-    real(wp) :: steps, step, end, seconds
+    real(wp) :: steps, step, seconds
     character(len=:), allocatable :: bound, time_bound
     logical :: lengthened
 
-    end = expected_end(deck)
-    steps = end/deck%stepping%time%step*shortened(deck)
-    step = end/steps
+    steps = expected_steps(deck)
+    step = expected_end(deck)/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
     ! Damage lengthens the contact by a time that is known roughly.
@@ -49,6 +48,13 @@ contains
     if (lengthened) sentence = sentence//'; damage may change the number of steps by a third'
     sentence = sentence//'.'
   end function explicit_sentence
+
+  !> Expected number of steps of a run.
+  real(wp) function expected_steps(deck) result(steps)
+    type(deck_t), intent(in) :: deck
+
+    steps = expected_end(deck)/deck%stepping%time%step*shortened(deck)
+  end function expected_steps
 
   !> Expected end of a run: that of the deck, or later where the run continues until the impactor has left and the plate
   !> is at rest. A contact longer than the deck's end is found by an elastic impact of its own.

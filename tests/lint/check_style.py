@@ -34,8 +34,8 @@ SPELLINGS = {
 COMMON_ARGUMENTS = {"self", "model", "deck", "settings", "problems", "now", "archive", "log", "error", "law"}
 # Arguments that their names explain where they have no documentation.
 NAMED_ARGUMENTS = {
-    "group", "key", "name", "path", "word", "point", "number", "line", "row", "part", "distance", "matrix", "method", "rank",
-    "summary", "text", "option", "message", "area", "radius", "energy", "tolerance",
+    "group", "key", "name", "path", "word", "point", "number", "line", "row", "part", "distance", "matrix", "method",
+    "rank", "summary", "text", "option", "message", "area", "radius", "energy", "tolerance",
 }
 # Names in a list of arguments that are none of those to document.
 NO_ARGUMENTS = {"", "*", "self", "this"}
@@ -193,8 +193,9 @@ def needs_no_doc(text, is_argument):
     names, of_type = names_and_type(text)
     known = words_of(of_type.replace("_", " "))
     common = COMMON_ARGUMENTS | NAMED_ARGUMENTS if is_argument else set()
-    return is_argument and meaning_of(text) is not None or all(
-        name in common or words_of(name.replace("_", " ")) <= known for name in names)
+    return (is_argument and meaning_of(text) is not None) or all(
+        name in common or words_of(name.replace("_", " ")) <= known for name in names
+    )
 
 
 def is_redundant(text, doc, is_argument):
@@ -204,8 +205,8 @@ def is_redundant(text, doc, is_argument):
         return False
     if is_argument and names[0] in COMMON_ARGUMENTS and len(re.findall(r"\w+", doc)) <= MAX_COMMON_WORDS:
         return True
-    meaning = meaning_of(text) if is_argument else None
-    return words_of(doc) <= words_of(names[0].replace("_", " ")) | words_of(of_type.replace("_", " ")) | (meaning or set())
+    meaning = (meaning_of(text) if is_argument else None) or set()
+    return words_of(doc) <= words_of(names[0].replace("_", " ")) | words_of(of_type.replace("_", " ")) | meaning
 
 
 def doc_above(lines, line):
@@ -387,7 +388,7 @@ class Checker:
             self.report(statement.line, f"{what} has no !> documentation above it")
 
     def check_doc(self, statement, what, is_deferred=False):
-        """Check that a component or an argument is documented where its name and type do not say all, and only there."""
+        """Check that it is documented where its name and type do not say all, and only there."""
         is_argument = what.startswith("argument")
         if not (is_deferred or needs_no_doc(statement.text, is_argument)):
             self.require_doc(statement, what)

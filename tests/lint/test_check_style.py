@@ -146,7 +146,11 @@ BREACHES = {
         "    !> 1 for x, 2 for y\n    integer, intent(in) :: along\n",
         "the documentation of argument along says no more",
     ),
-    "doc of a common argument": ("Receives a line for each thing", "The log", "the documentation of argument log says no more"),
+    "doc of a common argument": (
+        "Receives a line for each thing",
+        "The log",
+        "the documentation of argument log says no more",
+    ),
     "indent": ("        twice = 3", "       twice = 3", "indented by 7, not 8"),
     "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 60 lines"),
     "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
