@@ -29,6 +29,7 @@ program parallel_solvers
   type(numbering_t) :: numbering
   type(linear_solver_t) :: solver
   type(tKSP) :: krylov
+  type(tVec) :: right, left
   type(error_t), allocatable :: error
   character(len=:), allocatable :: path, options
   integer :: ierr
@@ -141,6 +142,7 @@ contains
     integer :: factor, solve, row, ierr, needed
 
     allocate (load(numbering%rows))
+    call MatCreateVecs(solver%matrix%object, left, right, ierr)
     iterations = 0
     do factor = 1, option('-study_factors', 1)
       ! Other values, the same pattern: a new factor, without an analysis of the pattern
@@ -154,8 +156,8 @@ contains
     call note(seconds(2), flops(2))
     do solve = 1, option('-study_solves', 1)
       load = [(sin(real(37*solve, wp)*row), row=numbering%first_row + 1, numbering%first_row + numbering%rows)]
-      call put(solver%matrix%right, load, ierr)
-      call KSPSolve(krylov, solver%matrix%right, solver%matrix%left, ierr)
+      call put(right, load, ierr)
+      call KSPSolve(krylov, right, left, ierr)
       if (ierr /= 0) error stop 'There was no solution.'
       call KSPGetIterationNumber(krylov, needed, ierr)
       iterations = iterations + needed
@@ -231,11 +233,11 @@ contains
     figures = [seconds(2:) - seconds(:2), flops(2:) - flops(:2), memory]
     call communicator%maximum(figures)
     call communicator%sum(memory)
-    call VecDuplicate(solver%matrix%left, left_over, ierr)
-    call MatMult(solver%matrix%object, solver%matrix%left, left_over, ierr)
-    call VecAXPY(left_over, -1.0_wp, solver%matrix%right, ierr)
+    call VecDuplicate(left, left_over, ierr)
+    call MatMult(solver%matrix%object, left, left_over, ierr)
+    call VecAXPY(left_over, -1.0_wp, right, ierr)
     call VecNorm(left_over, NORM_2, norms(1), ierr)
-    call VecNorm(solver%matrix%right, NORM_2, norms(2), ierr)
+    call VecNorm(right, NORM_2, norms(2), ierr)
     if (communicator%is_root()) &
       print '(a, i0, *(1x, es10.3))', 'study ', numbering%total, figures(:4), iterations, memory, norms(1)/norms(2)
     call VecDestroy(left_over, ierr)

@@ -1,7 +1,7 @@
 !> A matrix in subdomains of the ranks (MATIS) for domain decomposition, and the rigid motions of the plate for BDDC.
 module subdomain_matrices
   use, intrinsic :: iso_c_binding, only: c_intptr_t
-  use petscksp, only: tIS, tMatNullSpace, tPC, tVec, PETSC_COMM_SELF, PETSC_COPY_VALUES, PETSC_FALSE, &
+  use petscksp, only: tIS, tMatNullSpace, tPC, tVec, PETSC_COMM_SELF, PETSC_COPY_VALUES, PETSC_FALSE, PETSC_NULL_VEC, &
                       MatNullSpaceCreate
   use communicators, only: communicator_t
   use kinds, only: wp
@@ -34,7 +34,6 @@ contains
       call MatCreateIS(communicator%handle(), 1, rows, rows, total, total, mapping, mapping, matrix%object, ierr)
     end associate
     call MatISSetPreallocation(matrix%object, 0, widths, 0, 0*widths, ierr)
-    call MatCreateVecs(matrix%object, matrix%left, matrix%right, ierr)
     call ISLocalToGlobalMappingDestroy(mapping, ierr)
   end subroutine create_parts
 
@@ -54,7 +53,7 @@ contains
     integer :: i, k, n, ierr
 
     do i = 1, size(motions)
-      call VecDuplicate(matrix%left, motions(i), ierr)
+      call MatCreateVecs(matrix%object, motions(i), PETSC_NULL_VEC, ierr)
       call put(motions(i), rigid_motion(model, numbering, i), ierr)
       do k = 1, i - 1
         call VecDot(motions(i), motions(k), product, ierr)
