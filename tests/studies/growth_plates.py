@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Area, peak force and time of impacts by the cells, with growth by energy or by strengths.
-Usage: growth_plates.py run IMPLAM FOLDER DECK CELLS [CONTROL]  (DECK: peanut, which_interfaces or
-                                    experiments/t700_m21_6.5J; CELLS with commas, mm; CONTROL: energy or strength)
+Usage: growth_plates.py run IMPLAM FOLDER DECK CELLS [CONTROL]  (DECK: peanut, which_interfaces,
+                                    experiments/t700_m21_6.5J or experiments/t800s_3900_2b_impact_15.5J; CELLS with commas, mm; CONTROL: energy or strength)
 
 The patch has its size on all meshes, the elements outside of the core their number. `run` adds a row to
 growth/plates.csv for each mesh that has none, so that a stopped command continues. Times are processor times."""
@@ -23,7 +23,8 @@ COLUMNS = ["deck", "cell", "control", "cells_shear", "peak_force", "projected_ar
 # Half extents of the core less half of the patch along x and y, mm; elements outside; whether x is halved; the
 # shortest process zone of shear, mm.
 DECKS = {"peanut": ((19.2, 7.2), (6, 7), True, 2.59), "which_interfaces": ((22, 22), (3, 6), False, 3.37),
-         "experiments/t700_m21_6.5J": ((20, 20), (18, 20), False, 2.8)}
+         "experiments/t700_m21_6.5J": ((20, 20), (18, 20), False, 2.8),
+         "experiments/t800s_3900_2b_impact_15.5J": ((26, 26), (6, 12), False, 2.37)}
 
 
 def text_of(deck, cell, control):
