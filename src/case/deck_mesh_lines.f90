@@ -193,6 +193,12 @@ contains
       end associate
       zone%at(direction) = sum(moved)/2
       zone%size(direction) = moved(2) - moved(1)
+      associate (least => merging_distance*deck%setup%plate%length(direction))
+        if (zone%size(direction) < least*(1 - rounding)) &
+          call report(deck%settings, problems, group, key_zone_size, 'both edges along '// &
+                      merge('x', 'y', direction == 1)//' lie on one line of the mesh, as lines have a distance of '// &
+                      'at least '//short_text(least)//'; give a larger size, or other edges if these are moved.', i)
+      end associate
       call add_lines(lines, moved)
     end subroutine take
   end subroutine take_zone_lines
@@ -255,6 +261,7 @@ contains
       class(ply_zone_t), intent(in) :: zone
       character(len=*), intent(in) :: group
 
+      if (problems%concern(group, place=i)) return
       if (misses(deck, zone%edges(direction), direction)) &
         call report(deck%settings, problems, group, key_zone_at, 'no line of the mesh can be moved to its edges at '// &
                     merge('x', 'y', direction == 1)//' = '//to_text(zone%at(direction) - zone%size(direction)/2)// &

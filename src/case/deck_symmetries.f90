@@ -12,8 +12,8 @@ module deck_symmetries
   use line_deck, only: line_group
   use line_loads, only: along_x
   use laminate_parameters, only: shear_five_sixths
-  use mesh_parameters, only: has_symmetric_imperfection, is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, &
-                             symmetry_none, symmetry_point, &
+  use mesh_parameters, only: has_symmetric_imperfection, is_halved, is_mirrored, same_place, symmetry_half_x, &
+                             symmetry_half_y, symmetry_none, symmetry_point, &
                              symmetry_quarter
   use plate_deck, only: plate_group, key_symmetry
   use plies, only: ply_t, material_objection
@@ -32,9 +32,6 @@ module deck_symmetries
   !> Tolerance of zero coupling stiffness, relative to the stiffness it couples: round-off of plies whose couplings
   !> cancel is 1e-16, and one degree in one of a hundred plies gives 1e-4.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
-  !> Tolerance of the distance of a clamp from the image of another one, and of the ends of a strip from their images,
-  !> relative to the plate: .1 um in 100 mm, below the digits of a deck and above round-off.
-  real(wp), parameter :: same_place = 1.0e-6_wp
 
 contains
 

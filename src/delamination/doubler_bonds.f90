@@ -9,7 +9,7 @@ module doubler_bonds
   use ply_zone_parameters, only: back_face, front_face
   use ply_zones, only: ply_zones_t
   use text, only: line_t, to_text
-  use zone_deck, only: doubler_group
+  use zone_deck, only: doubler_group, ply_drop_group
   implicit none
   private
   public :: check_bonds, is_bond, names_of_doublers, new_bond, weaker_beside
@@ -128,7 +128,7 @@ contains
           call report(settings, problems, group, key_bond, 'the bond of doublers on the '// &
                       trim(merge('struck face', 'back       ', face == front_face))//' has been given before; '// &
                       'name all doublers of a face in one group.', delaminations(i)%group)
-        else if (.not. problems%concern(doubler_group)) then
+        else if (.not. (problems%concern(doubler_group) .or. problems%concern(ply_drop_group))) then
           call check_bond(settings, zones, delaminations(i), problems)
         end if
         known(face) = .true.

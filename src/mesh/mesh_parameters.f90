@@ -7,8 +7,8 @@ module mesh_parameters
   use roundings, only: rounding
   implicit none
   private
-  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, has_symmetric_imperfection, is_flat, curvatures, &
-            initial_deflection, add_lines
+  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, image_signs, has_symmetric_imperfection, is_flat, &
+            curvatures, initial_deflection, add_lines
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
@@ -17,6 +17,9 @@ module mesh_parameters
   !> Modelled parts of the plate: the full plate; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 with point symmetry.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
+  !> Tolerance of the distance of a stringer, clamp or end of a strip from the image of another one, relative to the
+  !> plate: .1 um in 100 mm, below the digits of a deck and above round-off.
+  real(wp), parameter, public :: same_place = 1.0e-6_wp
 
   !> The plate; lengths are of the full plate, also under symmetry.
   type :: plate_t
@@ -147,4 +150,21 @@ contains
     mirrored = [symmetry == symmetry_quarter .or. symmetry == symmetry_half_x, &
                 symmetry == symmetry_quarter .or. symmetry == symmetry_half_y]
   end function is_mirrored
+
+  !> Signs of x and y of the images of a plate, (2, images). With three images, the third is the first image of the
+  !> second.
+  pure function image_signs(symmetry) result(signs)
+    integer, intent(in) :: symmetry
+    integer, allocatable :: signs(:, :)
+
+    if (symmetry == symmetry_none) then
+      allocate (signs(2, 0))
+    else if (all(is_mirrored(symmetry))) then
+      signs = reshape([-1, 1, 1, -1, -1, -1], [2, 3])
+    else if (symmetry == symmetry_point) then
+      signs = reshape([-1, -1], [2, 1])
+    else
+      signs = reshape(merge(-1, 1, is_mirrored(symmetry)), [2, 1])
+    end if
+  end function image_signs
 end module mesh_parameters

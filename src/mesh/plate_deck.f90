@@ -73,7 +73,7 @@ contains
     end do
     plate%in_plane = code_of(settings%text_of(plate_group, 'in_plane'), 'fixed free tangential', &
                              [in_plane_fixed, in_plane_free, in_plane_tangential])
-    if (settings%is_given(plate_group, key_curvature_radius)) &
+    if (settings%is_known(plate_group, key_curvature_radius)) &
       plate%curvature_radius = settings%reals_of(plate_group, key_curvature_radius)
     if (settings%is_given(plate_group, key_imperfection)) &
       plate%imperfection = settings%real_of(plate_group, key_imperfection)

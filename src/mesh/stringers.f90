@@ -1,12 +1,12 @@
 !> Stringers of the deck: beams bonded to a face of the plate along a line of the mesh.
 module stringers
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, is_mirrored, symmetry_point
+  use mesh_parameters, only: image_signs, plate_t
   use roundings, only: rounding
   use stringer_sections, only: stringer_section_t
   implicit none
   private
-  public :: stringer_t, lines_of_stringers, move_line, is_covered, have_images, differ_at, mass_of
+  public :: stringer_t, lines_of_stringers, move_line, is_covered, have_images, are_images, differ_at, mass_of
 
   !> Faces: the struck one and the one opposite to it.
   integer, parameter, public :: face_front = 1, face_back = 2
@@ -86,49 +86,34 @@ contains
     integer, intent(in) :: symmetry
     !> Largest distance from the image, relative to the plate
     real(wp), intent(in) :: tolerance
-    logical :: mirrored(2)
+    integer :: i, image
 
-    mirrored = is_mirrored(symmetry)
-    alike = .true.
-    if (mirrored(1)) alike = alike .and. all_have([-1, 1])
-    if (mirrored(2)) alike = alike .and. all_have([1, -1])
-    if (symmetry == symmetry_point) alike = alike .and. all_have([-1, -1])
-
-  contains
-
-    !> True if the image by these signs of x and y of each stringer is one.
-    pure logical function all_have(signs)
-      !> Signs of x and y of the image
-      integer, intent(in) :: signs(2)
-      integer :: i, k
-      logical :: found
-
-      all_have = .true.
-      do i = 1, size(stringers)
-        found = .false.
-        do k = 1, size(stringers)
-          found = found .or. is_image(stringers(i), stringers(k), signs)
-        end do
-        all_have = all_have .and. found
-      end do
-    end function all_have
-
-    !> True if a stringer is the image of another.
-    pure logical function is_image(one, other, signs)
-      !> The stringer, and the other one
-      type(stringer_t), intent(in) :: one, other
-      !> Signs of x and y of the image
-      integer, intent(in) :: signs(2)
-      real(wp) :: ends(2)
-
-      is_image = one%along == other%along .and. one%face == other%face .and. have_equal_sections(one, other)
-      if (.not. is_image) return
-      ends = signs(one%along)*one%ends
-      if (signs(one%along) < 0) ends = ends([2, 1])
-      is_image = maxval(abs([signs(3 - one%along)*one%at - other%at, ends - other%ends])) <= &
-                 tolerance*maxval(plate%length)
-    end function is_image
+    associate (signs => image_signs(symmetry))
+      alike = all([((any(are_images(stringers, stringers(i), signs(:, image), tolerance*maxval(plate%length))), &
+                     i=1, size(stringers)), image=1, size(signs, 2))])
+    end associate
   end function have_images
+
+  !> True for stringers that are an image of one.
+  pure function are_images(stringers, one, signs, distance) result(are)
+    type(stringer_t), intent(in) :: stringers(:), one
+    !> Signs of x and y of the image
+    integer, intent(in) :: signs(2)
+    !> Largest distance from the image
+    real(wp), intent(in) :: distance
+    logical :: are(size(stringers))
+    real(wp) :: ends(2)
+    integer :: i
+
+    ends = signs(one%along)*one%ends
+    if (signs(one%along) < 0) ends = ends([2, 1])
+    do i = 1, size(stringers)
+      associate (other => stringers(i))
+        are(i) = one%along == other%along .and. one%face == other%face .and. have_equal_sections(one, other) .and. &
+                 maxval(abs([signs(3 - one%along)*one%at - other%at, ends - other%ends])) <= distance
+      end associate
+    end do
+  end function are_images
 
   !> First of two lists of stringers that differ; 0: they are equal.
   pure integer function differ_at(these, others) result(first)

@@ -6,7 +6,7 @@
 module symmetry_images
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use mesh_parameters, only: is_mirrored, symmetry_none, symmetry_point
+  use mesh_parameters, only: image_signs, symmetry_none
   use nine_node_grids, only: last_line, middle_line
   implicit none
   private
@@ -44,9 +44,7 @@ contains
     integer :: k
 
     if (symmetry == symmetry_none) return
-    allocate (flips(2, 1), source=.true.)
-    if (symmetry /= symmetry_point) flips(:, 1) = is_mirrored(symmetry)
-    if (all(is_mirrored(symmetry))) flips = reshape([.true., .false., .false., .true., .true., .true.], [2, 3])
+    flips = image_signs(symmetry) < 0
     allocate (points(mesh%points(), size(flips, 2)))
     do k = 1, size(points, 2)
       points(:, k) = image_of_points(mesh, flips(:, k))

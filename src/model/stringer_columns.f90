@@ -3,6 +3,9 @@ module stringer_columns
   use edge_beams, only: axial_row, beam_strains, bending_row, twist_row
   use element_batches, only: lanes
   use kinds, only: wp
+  use mesh_parameters, only: image_signs, same_place
+  use roundings, only: rounding
+  use stringers, only: are_images
   use composite_plates, only: composite_plate_t
   use reference_fields, only: gather
   use result_tables, only: result_row_length
@@ -21,6 +24,8 @@ module stringer_columns
       &largest in magnitude, positive in tension.']
   !> Number of these columns.
   integer, parameter, public :: columns = size(stringer_column_rows)
+  !> The one whose sign a mirror image changes.
+  integer, parameter :: torque_column = 3
 
 contains
 
@@ -38,7 +43,8 @@ contains
     if (.not. allocated(plate%setup%stringers)) return
     if (size(plate%setup%stringers) == 0) return
     ranges = ranges_of(plate, displacement)
-    values = [(merge(ranges(1, i), -ranges(2, i), ranges(1, i) >= ranges(2, i)), i=1, size(ranges, 2))]
+    ! Of opposite values that differ by round-off the positive one.
+    values = [(merge(ranges(1, i), -ranges(2, i), ranges(1, i) >= (1 - rounding)*ranges(2, i)), i=1, size(ranges, 2))]
   end function stringer_values
 
   !> First stringer whose strain at the free edge exceeds its strength; 0: none. Collective.
@@ -83,7 +89,35 @@ contains
     flat = reshape(ranges, [size(ranges)])
     call plate%communicator%maximum(flat)
     ranges = reshape(flat, shape(ranges))
+    call add_images(plate, ranges)
   end function ranges_of
+
+  !> Widens the ranges of stringers by those of their images, as only one of them may lie in the modelled part.
+  pure subroutine add_images(plate, ranges)
+    type(composite_plate_t), intent(in) :: plate
+    !> (sign, column)
+    real(wp), intent(inout) :: ranges(:, :)
+    real(wp) :: modelled(2, columns, size(plate%setup%stringers)), image(2, columns)
+    logical :: are(size(plate%setup%stringers))
+    integer :: i, k, part
+
+    modelled = reshape(ranges, shape(modelled))
+    associate (stringers => plate%setup%stringers, signs => image_signs(plate%setup%plate%symmetry))
+      do part = 1, size(signs, 2)
+        do i = 1, size(stringers)
+          are = are_images(stringers, stringers(i), signs(:, part), same_place*maxval(plate%setup%plate%length))
+          do k = 1, size(stringers)
+            if (.not. are(k)) cycle
+            image = modelled(:, :, i)
+            if (product(signs(:, part)) < 0) image([1, 2], torque_column) = image([2, 1], torque_column)
+            associate (own => ranges(:, columns*(k - 1) + 1:columns*k))
+              own = max(own, image)
+            end associate
+          end do
+        end do
+      end do
+    end associate
+  end subroutine add_images
 
   !> Columns of a beam at its three points.
   pure function resultants(plate, k, strains) result(values)

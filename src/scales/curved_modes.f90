@@ -4,7 +4,8 @@
 !> condensed out (Navier's solution of Donnell's equations, W. Soedel, Vibrations of Shells and Plates, 2004, section
 !> 6.4). Edges that hold it leave the mean strain of the lines between them. The larger of both stiffnesses is taken:
 !> with all edges held the first mode of isotropic and orthotropic squares and rectangles of sides 1 to 2, with one or
-!> two curvatures, was 7 % off at most (Ritz's method with 200 terms).
+!> two curvatures, was 7 % off at most (Ritz's method with 200 terms). Beyond a rise of two thicknesses modes change
+!> their shape, and the estimate of the frequency is too high: doc/manual/curved_panels.md.
 module curved_modes
   use kinds, only: wp
   use mathematical_constants, only: pi
