@@ -84,7 +84,7 @@ contains
       associate (p => self%stencils%points(i))
         if (.not. stacks%area(p) > 0) cycle
         associate (value => self%values(:, plate%distribution%points(p)))
-          value(of_tractions) = stacks%history%forces(:, p)/stacks%area(p)
+          value(of_tractions) = stacks%history(p)%forces/stacks%area(p)
           value(of_jumps) = u(1:3, p)
           value(of_damage) = cohesive%points(p)%damage
         end associate
@@ -120,7 +120,7 @@ contains
       end do
       if (largest < onset_share) return
       call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), &
-                      stacks%history%forces(:, p)/stacks%area(p), taken(self, of_jumps, near(behind, direction)), &
+                      stacks%history(p)%forces/stacks%area(p), taken(self, of_jumps, near(behind, direction)), &
                       strength, opening)
       if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
         call stacks%begin_softening(plate, cohesive, p, [strength, opening], u)
