@@ -228,7 +228,10 @@ contains
     call model%plate%borders%add(self%field)
     call multiply(size(self%force), -1.0_wp, self%field, self%force)
     call model%plate%profile%leave()
-    call self%impact%patch%add_force(model%plate%mesh%multiplicity, now%impact%force, self%force)
+    associate (patch => self%impact%patch)
+      self%force(3, :) = self%force(3, :) + patch%points%to_local( &
+        now%impact%force/model%plate%mesh%multiplicity*patch%weights, size(self%force, 2))
+    end associate
     call add_clamp_forces(model, self%force)
     call self%inertia%fold(self%force)
   end subroutine find_forces

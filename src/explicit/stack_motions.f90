@@ -9,9 +9,10 @@ module stack_motions
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
   use stack_batches, only: layer_lanes_t, load_layers, new_stack_batches, stack_batch_t, stack_batches_t, store_layers
-  use stack_solutions, only: solve_damaged, solve_intact, solve_tractions, weigh_openings
+  use stack_solutions, only: solve_damaged, solve_intact, solve_tractions
   use stack_updates, only: start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
+  use weighted_jumps, only: newest, past_jumps
   implicit none
   private
   public :: nodal_steps_t, move_stacks
@@ -54,7 +55,13 @@ contains
       batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, are_constrained(nodes))
     end if
     do b = 1, batches%filled
-      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, plate, cohesive, u, v)
+      associate (batch => batches%list(b))
+        if (batch%n == 0 .and. .not. batch%constrained) then
+          call move_single(batch, size(u, 2), nodes%inertia%inverse, nodes%steps, nodes%force, u, v)
+        else if (batch%members > 0) then
+          call move_batch(batch, nodes, plate, cohesive, u, v)
+        end if
+      end associate
     end do
     call move_alloc(batches, nodes%batches)
   end subroutine move_stacks
@@ -74,6 +81,32 @@ contains
     end do
   end function are_constrained
 
+  !> Updates unconstrained nodes with one layer, point by point: to load lanes would take longer.
+  pure subroutine move_single(batch, points, inverse, steps, force, u, v)
+    type(stack_batch_t), intent(in) :: batch
+    !> Number of points
+    integer, intent(in) :: points
+    !> Inverse inertia
+    real(wp), intent(in) :: inverse(7, points)
+    type(step_lengths_t), intent(in) :: steps
+    !> Forces on the layers
+    real(wp), intent(in) :: force(5, points)
+    !> Unknowns and their rates
+    real(wp), intent(inout) :: u(5, points), v(5, points)
+    real(wp) :: m(7), f(5), time
+    integer :: lane, p
+
+    time = steps%mean()
+    do lane = 1, batch%members
+      p = batch%first(lane)
+      m = inverse(:, p)
+      f = force(:, p)
+      v(:, p) = v(:, p) + [time*(m(1)*f(1) + m(2)*f(4)), time*(m(4)*f(2) + m(5)*f(5)), time*m(7)*f(3), &
+                           time*(m(2)*f(1) + m(3)*f(4)), time*(m(5)*f(2) + m(6)*f(5))]
+      u(:, p) = u(:, p) + steps%now*v(:, p)
+    end do
+  end subroutine move_single
+
   !> Updates the stacks of a batch.
   subroutine move_batch(batch, nodes, plate, cohesive, u, v)
     type(stack_batch_t), intent(in) :: batch
@@ -89,7 +122,9 @@ contains
     associate (history => nodes%stacks%history, points => size(u, 2), steps => nodes%steps)
       call load_layers(batch, points, u, v, nodes%force, history, cohesive, layers)
       call find_velocities(batch, layers)
-      call accelerate(batch, steps%mean(), layers)
+      do j = 0, batch%n
+        call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
+      end do
       if (batch%constrained) call prescribe(batch, nodes%lines, layers)
       call find_rates(batch, layers)
       do j = 1, batch%n
@@ -102,7 +137,9 @@ contains
       end if
       if (batch%constrained) call stop_at_frames(batch, nodes%rigs, steps, layers)
       call find_resultants(batch, layers)
-      call accelerate(batch, steps%mean(), layers)
+      do j = 0, batch%n
+        call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
+      end do
       if (batch%constrained) call record_reactions(batch, nodes, layers)
       call find_rates(batch, layers)
       do j = 1, batch%n
@@ -125,19 +162,14 @@ contains
   pure subroutine find_velocities(batch, layers)
     type(stack_batch_t), intent(in) :: batch
     type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
-    integer :: j, k
+    integer :: j
 
     layers(0)%velocity = layers(0)%rates
-    layers(0)%start = layers(0)%velocity
     do j = 1, batch%n
-      associate (velocity => layers(j)%velocity, rates => layers(j)%rates, above => layers(j - 1)%velocity)
-        velocity = rates
-        do k = 1, 2
-          velocity(:, k) = rates(:, k) + above(:, k) + batch%layers(j)%height*(above(:, k + 3) - rates(:, k + 3))
-        end do
-        velocity(:, 3) = rates(:, 3) + above(:, 3)
-        layers(j)%start = velocity
-      end associate
+      call relate(1.0_wp, batch%layers(j)%height, layers(j - 1)%velocity, layers(j)%rates, layers(j)%velocity)
+    end do
+    do j = 0, batch%n
+      layers(j)%start = layers(j)%velocity
     end do
   end subroutine find_velocities
 
@@ -145,36 +177,45 @@ contains
   pure subroutine find_rates(batch, layers)
     type(stack_batch_t), intent(in) :: batch
     type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
-    integer :: j, k
+    integer :: j
 
     layers(0)%rates = layers(0)%velocity
     do j = 1, batch%n
-      associate (rates => layers(j)%rates, velocity => layers(j)%velocity, above => layers(j - 1)%velocity)
-        rates = velocity
-        do k = 1, 2
-          rates(:, k) = velocity(:, k) - above(:, k) + batch%layers(j)%height*(velocity(:, k + 3) - above(:, k + 3))
-        end do
-        rates(:, 3) = velocity(:, 3) - above(:, 3)
-      end associate
+      call relate(-1.0_wp, batch%layers(j)%height, layers(j - 1)%velocity, layers(j)%velocity, layers(j)%rates)
     end do
   end subroutine find_rates
 
-  !> Adds the change of the velocities of the layers by forces during a time.
-  pure subroutine accelerate(batch, time, layers)
-    type(stack_batch_t), intent(in) :: batch
-    real(wp), intent(in) :: time
-    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
-    integer :: j, k
+  !> Adds the motion at an interface of the layer above to that of a layer, or subtracts it. As arguments the arrays are
+  !> known not to overlap, so that the operations are vectorized, here and in `accelerate`.
+  pure subroutine relate(sign, z, above, from, to)
+    !> 1 or -1, height of the interface, and velocity of the layer above
+    real(wp), intent(in) :: sign, z(lanes), above(lanes, 5)
+    !> Rates of the unknowns, or velocity of the layer
+    real(wp), intent(in) :: from(lanes, 5)
+    !> Velocity of the layer, or rates of the unknowns
+    real(wp), intent(out) :: to(lanes, 5)
 
-    do j = 0, batch%n
-      associate (m => batch%layers(j)%inverse, f => layers(j)%force, v => layers(j)%velocity)
-        do k = 1, 2
-          v(:, k) = v(:, k) + time*(m(:, 3*k - 2)*f(:, k) + m(:, 3*k - 1)*f(:, k + 3))
-          v(:, k + 3) = v(:, k + 3) + time*(m(:, 3*k - 1)*f(:, k) + m(:, 3*k)*f(:, k + 3))
-        end do
-        v(:, 3) = v(:, 3) + time*m(:, 7)*f(:, 3)
-      end associate
-    end do
+    to(:, 1) = from(:, 1) + sign*above(:, 1) + z*(sign*(above(:, 4) - from(:, 4)))
+    to(:, 2) = from(:, 2) + sign*above(:, 2) + z*(sign*(above(:, 5) - from(:, 5)))
+    to(:, 3) = from(:, 3) + sign*above(:, 3)
+    to(:, 4:5) = from(:, 4:5)
+  end subroutine relate
+
+  !> Adds the change of the velocity of a layer by forces during a time.
+  pure subroutine accelerate(m, time, f, v)
+    !> Inverse inertia
+    real(wp), intent(in) :: m(lanes, 7)
+    real(wp), intent(in) :: time
+    !> Forces
+    real(wp), intent(in) :: f(lanes, 5)
+    !> Velocity
+    real(wp), intent(inout) :: v(lanes, 5)
+
+    v(:, 1) = v(:, 1) + time*(m(:, 1)*f(:, 1) + m(:, 2)*f(:, 4))
+    v(:, 4) = v(:, 4) + time*(m(:, 2)*f(:, 1) + m(:, 3)*f(:, 4))
+    v(:, 2) = v(:, 2) + time*(m(:, 4)*f(:, 2) + m(:, 5)*f(:, 5))
+    v(:, 5) = v(:, 5) + time*(m(:, 5)*f(:, 2) + m(:, 6)*f(:, 5))
+    v(:, 3) = v(:, 3) + time*m(:, 7)*f(:, 3)
   end subroutine accelerate
 
   !> Forces of the tractions on the layers.
@@ -236,10 +277,15 @@ contains
               .and. w + steps%now*(lowest%velocity(:, 3) - mobility*lowest%forces(:, 3)) > 0
       if (any(stops) .and. batch%n > 0) then
         do j = 1, batch%n
-          if (.not. batch%damaged) call weigh_openings(batch%layers(j), layers(j))
-          normal(:, j) = layers(j)%normal
-          given(:, j) = layers(j)%given(:, 3)
-          forces(:, j) = layers(j)%forces(:, 3)
+          associate (layer => layers(j), stiffness => batch%layers(j)%stiffness(:, 2))
+            normal(:, j) = layer%normal
+            given(:, j) = layer%given(:, 3)
+            if (.not. batch%damaged) then
+              normal(:, j) = newest*stiffness
+              given(:, j) = stiffness*past_jumps(layer%u(:, 3), layer%past%change(:, 3), layer%past%earlier(:, 3))
+            end if
+            forces(:, j) = layer%forces(:, 3)
+          end associate
         end do
         where (stops) lowest%trial(:, 3) = lowest%u(:, 3) - w - steps%now*layers(batch%n - 1)%velocity(:, 3)
         held = merge(steps%now*steps%mean()*batch%layers(batch%n)%inverse(:, 7), 0.0_wp, stops)

@@ -25,7 +25,7 @@ module stack_solutions
   use weighted_jumps, only: newest, past_jumps, past_openings, past_weights
   implicit none
   private
-  public :: energy_of, may_grow, solve_damaged, solve_intact, solve_tractions, weigh_openings
+  public :: energy_of, may_grow, solve_damaged, solve_intact, solve_tractions
 
   !> Of layers that frames do not hold.
   real(wp), parameter :: unheld(lanes) = 0
@@ -98,7 +98,8 @@ contains
     do j = 1, batch%n
       call weigh_jumps(batch%layers(j), layers(j))
     end do
-    call solve_directions(batch, layers)
+    call solve_openings(batch, layers)
+    call solve_shears(batch, layers)
     if (cohesive%is_held) return
     do k = 1, 3
       jumps(:, k, :) = jumps_of(batch, k, layers)
@@ -113,7 +114,9 @@ contains
       end do
       any_grows = any_grows .or. any(grows)
     end do
-    if (any_grows) call solve_directions(batch, layers)
+    if (.not. any_grows) return
+    call solve_openings(batch, layers)
+    call solve_shears(batch, layers)
   end subroutine solve_damaged
 
   !> Stiffness of the weighted jumps and contribution of the earlier ones, with the damage at the start.
@@ -138,25 +141,6 @@ contains
       layer%secant = newest*layer%secant
     end associate
   end subroutine weigh_jumps
-
-  !> Force per opening and given part of the normal forces of an undamaged interface, for frames.
-  pure subroutine weigh_openings(constants, layer)
-    type(layer_constants_t), intent(in) :: constants
-    type(layer_lanes_t), intent(inout) :: layer
-
-    layer%normal = newest*constants%stiffness(:, 2)
-    layer%given(:, 3) = constants%stiffness(:, 2)*past_jumps(layer%u(:, 3), layer%past%change(:, 3), &
-                                                             layer%past%earlier(:, 3))
-  end subroutine weigh_openings
-
-  !> Openings, and with their pressure shears.
-  pure subroutine solve_directions(batch, layers)
-    type(stack_batch_t), intent(in) :: batch
-    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
-
-    call solve_openings(batch, layers)
-    call solve_shears(batch, layers)
-  end subroutine solve_directions
 
   !> Forces normal to the surfaces, and limits of friction. The active set of contacts is that of the last solution,
   !> until it no longer changes; the law is monotonic, so the iteration converges. Lanes that have converged repeat

@@ -29,7 +29,6 @@ module struck_patches
     procedure :: find_deflections
     procedure :: find_indentation
     procedure :: touch
-    procedure :: add_force
     procedure :: visit
   end type struck_patch_t
 
@@ -121,24 +120,6 @@ contains
       self%offset = self%offset + (found - indentation)
     end do
   end subroutine touch
-
-  !> Adds the nodal forces of a force on the full plate.
-  pure subroutine add_force(self, multiplicity, force, forces)
-    class(struck_patch_t), intent(in) :: self
-    !> Models that make up the full plate
-    integer, intent(in) :: multiplicity
-    !> The force
-    real(wp), intent(in) :: force
-    !> Forces on the layers, (5, points)
-    real(wp), intent(inout) :: forces(:, :)
-    integer :: i
-
-    do i = 1, size(self%weights)
-      associate (point => self%points%local(i))
-        if (point > 0) forces(3, point) = forces(3, point) + force/multiplicity*self%weights(i)
-      end associate
-    end do
-  end subroutine add_force
 
   !> Saves or loads.
   subroutine visit(self, archive)
