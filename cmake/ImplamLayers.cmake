@@ -42,7 +42,7 @@ function(implam_add_layers)
   # Arrays of the size of one node's stack, in the loop over nodes: GNU allocates and frees them in each call otherwise.
   # Larger arrays would exceed the limit of the stack.
   if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
-    foreach(module IN ITEMS layer_motions stack_motions stack_solutions stack_updates tridiagonal_systems)
+    foreach(module IN ITEMS stack_batches stack_motions stack_solutions stack_updates)
       set_property(SOURCE src/explicit/${module}.f90 APPEND PROPERTY COMPILE_OPTIONS -fstack-arrays)
     endforeach()
   endif()

@@ -48,15 +48,15 @@ contains
     call add_kinetic(method, model%plate, now, 1.0_wp, sums(1), sums(2))
     call sums(3)%add(method%strain)
     call add_stored(method, model, now, sums(3))
-    associate (owned => model%plate%distribution%owned, lost => method%stacks%history%lost)
+    associate (owned => model%plate%distribution%owned, history => method%stacks%history)
       if (allocated(now%interfaces%cohesive%points)) then
         associate (points => now%interfaces%cohesive%points(:owned), area => method%stacks%area(:owned))
           call sums(4)%add(area*points%dissipated)
           call sums(5)%add(area*points%sliding%heat)
         end associate
       end if
-      call sums(6)%add(lost(1, :owned) + method%rigs%frame_loss(:owned))
-      call sums(7)%add(lost(2, :owned) + method%rigs%step_loss(:owned))
+      call sums(6)%add(history(:owned)%lost(1) + method%rigs%frame_loss(:owned))
+      call sums(7)%add(history(:owned)%lost(2) + method%rigs%step_loss(:owned))
       call sums(8)%add(method%lines%work(:owned))
     end associate
     totals = totals_of(model%plate%communicator, sums)*model%plate%mesh%multiplicity
@@ -110,8 +110,8 @@ contains
 
     layer = plate%motion_of(now%motion%velocity)
     do i = 1, plate%distribution%owned
-      associate (m => method%inertia%mass(:, i), v => layer(:, i), change => method%stacks%history%change(:, i), &
-                 lambda => method%stacks%history%forces(:, i), force => method%force(:, i))
+      associate (m => method%inertia%mass(:, i), v => layer(:, i), change => method%stacks%history(i)%change, &
+                 lambda => method%stacks%history(i)%forces, force => method%force(:, i))
         plane(i) = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
         total(i) = m(4)*v(3)**2/2 + plane(i) + method%steps%now/2*(force(1)*v(1) + force(2)*v(2) + force(3)*v(3) &
                                                                   + force(4)*v(4) + force(5)*v(5)) &
@@ -127,8 +127,10 @@ contains
     end if
     if (method%parameters%mass_scaling > 1) call scaled%add(plane)
     call kinetic%add(total)
-    do i = 1, size(method%lines%dofs)
-      call kinetic%add(method%lines%dofs(i)%reaction*method%lines%dofs(i)%change/2)
+    do i = 1, size(method%lines%points)
+      associate (p => method%lines%points(i))
+        call kinetic%add(method%lines%reaction(:, p)*method%lines%change(:, p)/2)
+      end associate
     end do
   end subroutine add_kinetic
 
@@ -183,9 +185,9 @@ contains
     kept = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, plate, now, 1.0_wp)
     now%motion%velocity = kept*now%motion%velocity
-    call method%stacks%history%damp(kept)
+    call method%stacks%damp(kept)
     method%rigs%approach = kept*method%rigs%approach
-    method%lines%dofs%change = kept*method%lines%dofs%change
+    method%lines%change = kept*method%lines%change
     now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, plate, now, kept)
   end subroutine damp_motion
 

@@ -23,7 +23,6 @@ module central_differences
   use rig_steps, only: add_clamp_forces, create_rig_steps
   use section_bounds, only: largest_stiffness
   use stable_steps, only: highest_element_frequency, stiffened_frequency
-  use layer_motions, only: accelerate, move_points
   use stack_motions, only: move_stacks, nodal_steps_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t, commensurate_step
@@ -51,8 +50,6 @@ module central_differences
     type(front_onsets_t), private :: onsets
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
-    !> Points of nodes with one layer: unconstrained ones, and those constrained by a frame or a line
-    integer, allocatable, private :: unconstrained(:), constrained(:)
     !> Highest frequency of the undeformed elements, and that allowed for by the step
     real(wp) :: frequency = 0, stiffened = 0
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
@@ -99,10 +96,10 @@ contains
     self%rigs = create_rig_steps(model)
     self%lines = create_line_steps(model, self%inertia)
     self%onsets = create_front_onsets(model%plate)
-    call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impact%impactor%velocity)
     self%impact%patch%offset = merge(-now%impact%patch%touched_at, now%impact%patch%offset, allocated(model%nose))
-    call self%impact%patch%gather(model%plate, self%inertia%inverse_of_images())
+    self%impact%patch%inverse = self%impact%patch%points%gathered(model%plate%communicator, &
+                                                                  self%inertia%inverse_of_images())
     allocate (self%force(5, size(model%plate%distribution%points)), self%field(5, model%plate%borders%columns), &
               self%strain(lanes, model%plate%elements%batches), source=0.0_wp)
     self%motion = self%force
@@ -110,18 +107,6 @@ contains
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
-
-  !> Separates points constrained by a frame or a line from unconstrained ones.
-  subroutine separate_constrained_points(self)
-    type(central_difference_t), intent(inout) :: self
-    logical :: constrained(size(self%stacks%single))
-    integer :: i
-
-    constrained = [(self%rigs%on_frame(self%stacks%single(i)) .or. self%lines%is_prescribed(self%stacks%single(i)), &
-                   i=1, size(constrained))]
-    self%unconstrained = pack(self%stacks%single, .not. constrained)
-    self%constrained = pack(self%stacks%single, constrained)
-  end subroutine separate_constrained_points
 
   !> Stable step of elements and contact times step_factor, theory (T6). The highest frequency with added springs is at
   !> most the root of the sum of the squares of the frequencies.
@@ -170,7 +155,6 @@ contains
         rates = v(:, self%inertia%sprung)
       end if
       call change_length(self, plate, v, -1)
-      call move_single(self, plate, u, v)
       call move_stacks(self%nodal_steps_t, plate, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia, self%steps, rates, v)
       call self%rigs%circles%constrain(plate, self%steps, u(3, :), v(3, :))
@@ -223,35 +207,10 @@ contains
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
     call self%rigs%circles%prepare(plate, self%inertia%inverse(7, :))
-    call self%impact%patch%gather(plate, self%inertia%inverse_of_images())
+    self%impact%patch%inverse = self%impact%patch%points%gathered(plate%communicator, self%inertia%inverse_of_images())
     if (allocated(self%batches)) deallocate (self%batches)
     self%prepared = self%steps
   end subroutine prepare
-
-  !> Moves nodes with one layer.
-  subroutine move_single(self, plate, u, v)
-    type(central_difference_t), intent(inout) :: self
-    type(composite_plate_t), intent(in) :: plate
-    !> Unknowns and their rates, (5, points)
-    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: before(5)
-    integer :: i, p
-
-    call move_points(size(u, 2), self%unconstrained, self%inertia%inverse, self%steps%mean(), self%steps%now, &
-                     self%force, u, v)
-    do i = 1, size(self%constrained)
-      p = self%constrained(i)
-      if (self%lines%is_prescribed(p)) before = v(:, p)
-      call accelerate(self%inertia%inverse(:, p), self%steps%mean(), self%force(:, p), v(:, p))
-      if (self%lines%is_prescribed(p)) then
-        call self%lines%prescribe(p, v(:, p))
-        call self%lines%react(p, self%steps, self%inertia%mass(:, p), before, v(:, p), self%force(:, p))
-      end if
-      if (self%rigs%on_frame(p)) &
-        call self%rigs%stop_at_frame(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
-      u(:, p) = u(:, p) + self%steps%now*v(:, p)
-    end do
-  end subroutine move_single
 
   !> Finds the forces on the layers. Collective.
   subroutine find_forces(self, model, now)
@@ -269,7 +228,10 @@ contains
     call model%plate%borders%add(self%field)
     call multiply(size(self%force), -1.0_wp, self%field, self%force)
     call model%plate%profile%leave()
-    call self%impact%patch%add_force(model%plate%mesh%multiplicity, now%impact%force, self%force)
+    associate (patch => self%impact%patch)
+      self%force(3, :) = self%force(3, :) + patch%points%to_local( &
+        now%impact%force/model%plate%mesh%multiplicity*patch%weights, size(self%force, 2))
+    end associate
     call add_clamp_forces(model, self%force)
     call self%inertia%fold(self%force)
   end subroutine find_forces
@@ -344,7 +306,6 @@ contains
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
     if (allocated(self%batches)) deallocate (self%batches)
-    call separate_constrained_points(self)
     self%motion = model%plate%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
     if (self%steps%now > 0) call prepare(self, model%plate)
@@ -366,6 +327,6 @@ contains
     call self%impact%visit(archive)
     if (size(model%loads%lines) > 0 .or. allocated(model%loads%pressure) .or. model%plate%setup%initial%is_inherited) &
       call self%lines%visit(archive, model%plate)
-    if (model%plate%map%layered) call self%stacks%history%visit(archive, model%plate)
+    if (model%plate%map%layered) call self%stacks%visit(archive, model%plate)
   end subroutine visit
 end module central_differences

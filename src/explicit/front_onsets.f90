@@ -5,7 +5,7 @@ module front_onsets
   use cohesive_laws, only: cohesive_law_t
   use delamination_parameters, only: growth_by_energy, law_cohesive
   use energy_onsets, only: onset_share, reduce_law, release_over_toughness
-  use front_stencils, only: ahead, behind, create_front_stencils, far_behind, front_stencils_t
+  use front_stencils, only: ahead, behind, create_front_stencils, far_behind, front_stencils_t, image_signs
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
@@ -18,8 +18,6 @@ module front_onsets
   integer, parameter :: steps_between_searches = 4
   !> Values of a point: tractions, jumps, and damage.
   integer, parameter :: of_tractions(3) = [1, 2, 3], of_jumps(3) = [4, 5, 6], of_damage = 7
-  !> Signs of jumps and tractions of images under point symmetry.
-  real(wp), parameter :: turned(3) = [-1.0_wp, -1.0_wp, 1.0_wp]
 
   !> Search for points that begin to soften.
   type :: front_onsets_t
@@ -84,7 +82,7 @@ contains
       associate (p => self%stencils%points(i))
         if (.not. stacks%area(p) > 0) cycle
         associate (value => self%values(:, plate%distribution%points(p)))
-          value(of_tractions) = stacks%history%forces(:, p)/stacks%area(p)
+          value(of_tractions) = stacks%history(p)%forces/stacks%area(p)
           value(of_jumps) = u(1:3, p)
           value(of_damage) = cohesive%points(p)%damage
         end associate
@@ -106,58 +104,58 @@ contains
     real(wp) :: rate, largest, strength, opening
     integer :: d, direction
 
-    associate (p => self%stencils%points(i), near => self%stencils%near(:, :, i))
+    associate (p => self%stencils%points(i), near => self%stencils%near(:, :, i), &
+               images => self%stencils%images(:, :, i))
       largest = 0
       direction = 0
       do d = 1, size(near, 2)
         if (any(near(behind:far_behind, d) == 0)) cycle
-        if (.not. self%values(of_damage, abs(near(behind, d))) > 0) cycle
+        if (.not. self%values(of_damage, near(behind, d)) > 0) cycle
         rate = rate_in(self, plate%interfaces%cohesive_laws(plate%zone(p)), plate%distribution%points(p), near(:, d), &
-                       self%stencils%widths(:, d, i))
+                       images(:, d), self%stencils%widths(:, d, i))
         if (.not. rate > largest) cycle
         largest = rate
         direction = d
       end do
       if (largest < onset_share) return
       call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), &
-                      stacks%history%forces(:, p)/stacks%area(p), taken(self, of_jumps, near(behind, direction)), &
-                      strength, opening)
+                      stacks%history(p)%forces/stacks%area(p), taken(self, of_jumps, near(behind, direction), &
+                      images(behind, direction)), strength, opening)
       if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
         call stacks%begin_softening(plate, cohesive, p, [strength, opening], u)
     end associate
   end subroutine find_at
 
   !> Energy release rate over the toughness for growth in one direction.
-  pure real(wp) function rate_in(self, law, point, near, widths) result(rate)
+  pure real(wp) function rate_in(self, law, point, near, images, widths) result(rate)
     type(front_onsets_t), intent(in) :: self
     !> The law of the undamaged interface
     type(cohesive_law_t), intent(in) :: law
-    !> The point of the mesh, and those ahead and behind
-    integer, intent(in) :: point, near(3)
+    !> The point of the mesh, those ahead and behind, and their columns of `image_signs`
+    integer, intent(in) :: point, near(3), images(3)
     !> Lengths that belong to the point and to the node ahead
     real(wp), intent(in) :: widths(2)
     real(wp) :: tractions(3, 2), jumps(3, 2)
 
     tractions(:, 1) = self%values(of_tractions, point)
-    tractions(:, 2) = taken(self, of_tractions, near(ahead))
-    jumps(:, 1) = taken(self, of_jumps, near(behind))
-    jumps(:, 2) = taken(self, of_jumps, near(far_behind))
+    tractions(:, 2) = taken(self, of_tractions, near(ahead), images(ahead))
+    jumps(:, 1) = taken(self, of_jumps, near(behind), images(behind))
+    jumps(:, 2) = taken(self, of_jumps, near(far_behind), images(far_behind))
     rate = release_over_toughness(law, tractions, jumps, widths)
   end function rate_in
 
   !> Traction or jump of a node of a stencil; zero without a node.
-  pure function taken(self, which, point) result(vector)
+  pure function taken(self, which, point, image) result(vector)
     type(front_onsets_t), intent(in) :: self
     !> Indices of the values
     integer, intent(in) :: which(3)
-    !> The point of the mesh, negative for its image
-    integer, intent(in) :: point
+    !> The point of the mesh, and its column of `image_signs`
+    integer, intent(in) :: point, image
     !> Two shears and opening
     real(wp) :: vector(3)
 
     vector = 0
     if (point == 0) return
-    vector = self%values(which, abs(point))
-    if (point < 0) vector = turned*vector
+    vector = image_signs(:, image)*self%values(which, point)
   end function taken
 end module front_onsets

@@ -79,7 +79,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state; receives the deflections under the impactor
     type(state_t), intent(inout) :: now
-    real(wp) :: w(size(self%patch%local))
+    real(wp) :: w(size(self%patch%weights))
 
     call self%patch%find_deflections(model%plate, now%motion%displacement, w, now%impact%deflection)
     call self%patch%touch(w, now%impact%indentation%dent)
@@ -99,7 +99,7 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> The state at the end of the step; receives the motion of the impactor
     type(state_t), intent(inout) :: now
-    real(wp) :: alpha, before, change, w(size(self%patch%local))
+    real(wp) :: alpha, before, change, w(size(self%patch%weights))
 
     if (model%plate%setup%impactor%is_present .and. now%time <= model%plate%setup%loading%start) then
       call self%place(model, now)

@@ -12,37 +12,30 @@ module interface_stacks
   private
   public :: jump_history_t, interface_stacks_t, create_interface_stacks, last_layer
 
-  !> Earlier steps of the jumps at each point.
+  !> Earlier steps of the jumps at a point.
   type :: jump_history_t
-    !> Forces on the jumps in the last step, (3, points)
-    real(wp), allocatable :: forces(:, :)
-    !> Change of the jumps in the last step, and in the one before, (3, points)
-    real(wp), allocatable :: change(:, :), earlier(:, :)
-    !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before, (4, points)
-    real(wp), allocatable :: sticking(:, :)
+    !> Forces on the jumps in the last step
+    real(wp) :: forces(3) = 0
+    !> Change of the jumps in the last step, and in the one before. Damping does not reduce them: with those of the
+    !> undamped motion the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
+    real(wp) :: change(3) = 0, earlier(3) = 0
+    !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions
+    real(wp) :: lost(2) = 0
     !> Friction, for its heat: number of further steps whose forces depend on the last slip, change of the energy of
-    !> sticking in the last step and negative heat of earlier steps, both per area, (3, points)
-    real(wp), allocatable :: rubbing(:, :)
-    !> Work on the cohesive law of damaged surfaces in the last step, (points)
-    real(wp), allocatable :: work(:)
-    !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
-    real(wp), allocatable :: lost(:, :)
-  contains
-    procedure :: begin_step
-    procedure :: damp
-    !> Checkpoint.
-    procedure :: visit
+    !> sticking in the last step and negative heat of earlier steps, both per area
+    real(wp) :: rubbing(3) = 0
+    !> Work on the cohesive law of damaged surfaces in the last step
+    real(wp) :: work = 0
+    !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before
+    real(wp) :: sticking(4) = 0
   end type jump_history_t
 
-  !> Stacks of layers. Points of a stack follow each other downwards; each but the first carries the interface above it.
+  !> Stacks of layers, of nodes with one layer, too. Points of a stack follow each other downwards; each but the first
+  !> carries the interface above it.
   type :: interface_stacks_t
     !> First point and number of layers of each independent stack, (stacks)
     integer, allocatable :: first(:), layers(:)
-    !> Independent points of nodes with one layer
-    integer, allocatable :: single(:)
-    !> Height z of the interface above a point, (points)
-    real(wp), allocatable :: height(:)
-    !> Area of that interface at the node, with that of dependent points, (points)
+    !> Area of the interface above a point at the node, with that of dependent points, (points)
     real(wp), allocatable :: area(:)
     !> Stiffness of the undamaged interface against shear and opening, force per jump, (2, points)
     real(wp), allocatable :: stiffness(:, :)
@@ -54,8 +47,8 @@ module interface_stacks
     logical, private :: is_held = .false.
     !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
-    !> Earlier steps of the jumps
-    type(jump_history_t) :: history
+    !> Earlier steps of the jumps, (points)
+    type(jump_history_t), allocatable :: history(:)
   contains
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
@@ -63,66 +56,12 @@ module interface_stacks
     procedure :: begin_softening
     procedure :: may_separate
     procedure :: mark_damaged
+    procedure :: damp
     procedure :: copy_to_dependents
+    procedure :: visit
   end type interface_stacks_t
 
 contains
-
-  !> The history of jumps that have not moved.
-  pure function create_jump_history(points) result(self)
-    !> Number of points
-    integer, intent(in) :: points
-    type(jump_history_t) :: self
-
-    allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%sticking(4, points), &
-              self%rubbing(3, points), self%work(points), self%lost(2, points), source=0.0_wp)
-  end function create_jump_history
-
-  !> The last change of each jump is the earlier one of the step that begins. Its own, `change`, has no meaning until
-  !> the jump has moved: until then it is that of two steps before.
-  pure subroutine begin_step(self)
-    class(jump_history_t), intent(inout) :: self
-    real(wp), allocatable :: before(:, :)
-
-    call move_alloc(self%earlier, before)
-    call move_alloc(self%change, self%earlier)
-    call move_alloc(before, self%change)
-  end subroutine begin_step
-
-  !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
-  !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
-  pure subroutine damp(self, ratio)
-    class(jump_history_t), intent(inout) :: self
-    !> Factor of the work
-    real(wp), intent(in) :: ratio
-
-    self%work = ratio*self%work
-    self%rubbing(2, :) = ratio*self%rubbing(2, :)
-  end subroutine damp
-
-  !> Writes or reads the history.
-  subroutine visit(self, archive, plate)
-    class(jump_history_t), intent(inout) :: self
-    class(archive_t), intent(inout) :: archive
-    type(composite_plate_t), intent(in) :: plate
-    real(wp) :: values(19, size(self%work))
-
-    values(1:3, :) = self%forces
-    values(4:6, :) = self%change
-    values(7:9, :) = self%earlier
-    values(10:11, :) = self%lost
-    values(12:14, :) = self%rubbing
-    values(15, :) = self%work
-    values(16:19, :) = self%sticking
-    call plate%visit_points(archive, 'explicit/interfaces', values, vector_fields([1, 4, 7, 16, 18]))
-    self%forces = values(1:3, :)
-    self%change = values(4:6, :)
-    self%earlier = values(7:9, :)
-    self%lost = values(10:11, :)
-    self%rubbing = values(12:14, :)
-    self%work = values(15, :)
-    self%sticking = values(16:19, :)
-  end subroutine visit
 
   !> Stacks of a model.
   function create_interface_stacks(model, cohesive, inertia) result(self)
@@ -133,24 +72,17 @@ contains
     integer :: i, points
 
     associate (above => model%plate%map%above, owned => model%plate%distribution%owned)
-      points = size(model%plate%distribution%points)
-      self%single = pack([(i, i=1, owned)], .not. inertia%is_dependent(:owned) .and. above(:owned) == 0 .and. &
-                         [(.not. has_layer_below(above, i), i=1, owned)])
-      self%first = pack([(i, i=1, owned)], .not. inertia%is_dependent(:owned) .and. above(:owned) == 0 .and. &
-                        [(has_layer_below(above, i), i=1, owned)])
-      allocate (self%layers(size(self%first)), self%damaged(size(self%first)))
-      do i = 1, size(self%first)
-        self%layers(i) = last_layer(above, self%first(i)) - self%first(i) + 1
-      end do
+      points = size(above)
+      self%first = pack([(i, i=1, owned)], .not. inertia%is_dependent(:owned) .and. above(:owned) == 0)
+      self%layers = [(last_layer(above, self%first(i)) - self%first(i) + 1, i=1, size(self%first))]
     end associate
-    self%height = model%plate%map%height
+    allocate (self%damaged(size(self%first)), self%history(points))
     self%area = model%plate%interfaces%contact_area
     do i = 1, size(inertia%dependents)
       self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
       self%area(inertia%dependents(i)) = 0
     end do
     allocate (self%stiffness(2, points), self%min_onset(points), self%strength(points), source=0.0_wp)
-    self%history = create_jump_history(points)
     do i = 1, model%plate%distribution%owned
       if (model%plate%zone(i) == 0) cycle
       associate (law => model%plate%interfaces%cohesive_laws(model%plate%zone(i)))
@@ -161,25 +93,14 @@ contains
     call self%find_damaged(cohesive)
   end function create_interface_stacks
 
-  !> True if the point after a point of this rank is the next layer of the same node.
-  pure logical function has_layer_below(above, i)
-    !> Point above each point; 0: none
-    integer, intent(in) :: above(:)
-    integer, intent(in) :: i
-
-    has_layer_below = .false.
-    if (i < size(above)) has_layer_below = above(i + 1) == i
-  end function has_layer_below
-
   !> Point of the lowest layer of the node of a point of this rank.
   pure integer function last_layer(above, i) result(point)
     !> Point above each point; 0: none
     integer, intent(in) :: above(:)
     integer, intent(in) :: i
 
-    point = i
-    do while (has_layer_below(above, point))
-      point = point + 1
+    do point = i, size(above) - 1
+      if (above(point + 1) /= point) return
     end do
   end function last_layer
 
@@ -214,6 +135,8 @@ contains
     type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: i
 
+    self%damaged = .false.
+    if (.not. allocated(cohesive%points)) return
     do i = 1, size(self%first)
       associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
         self%damaged(i) = any(cohesive%points(from:to)%damage > 0 .or. cohesive%by_energy(from:to))
@@ -224,7 +147,6 @@ contains
   !> True for an independent point that no clamp holds.
   pure logical function may_separate(self, p)
     class(interface_stacks_t), intent(in) :: self
-    !> The point
     integer, intent(in) :: p
 
     may_separate = self%area(p) > 0 .and. self%min_onset(p) < huge(1.0_wp)
@@ -237,7 +159,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> The interfaces; receive the law
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> The point
     integer, intent(in) :: p
     !> Factors of the strengths and of the stiffness of opening
     real(wp), intent(in) :: factors(2)
@@ -247,7 +168,7 @@ contains
     cohesive%strength(p) = factors(1)
     cohesive%opening(p) = factors(2)
     cohesive%by_energy(p) = .true.
-    self%history%lost(2, p) = self%history%lost(2, p) + (1 - factors(2))*self%stiffness(2, p)*max(0.0_wp, u(3, p))**2/2
+    self%history(p)%lost(2) = self%history(p)%lost(2) + (1 - factors(2))*self%stiffness(2, p)*max(0.0_wp, u(3, p))**2/2
     first = p
     do while (plate%map%above(first) > 0)
       first = plate%map%above(first)
@@ -269,11 +190,21 @@ contains
     self%damaged(i) = .true.
     do p = self%first(i) + 1, self%first(i) + self%layers(i) - 1
       cohesive%points(p)%sliding%slip = u(1:2, p)
-      associate (last => self%history%change(:, p))
-        self%history%work(p) = sum(self%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
+      associate (last => self%history(p)%change)
+        self%history(p)%work = sum(self%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
       end associate
     end do
   end subroutine mark_damaged
+
+  !> Reduces the work done in the last step by a factor of the velocities.
+  pure subroutine damp(self, ratio)
+    class(interface_stacks_t), intent(inout) :: self
+    !> The factor
+    real(wp), intent(in) :: ratio
+
+    self%history%work = ratio*self%history%work
+    self%history%rubbing(2) = ratio*self%history%rubbing(2)
+  end subroutine damp
 
   !> Copies the state of the interfaces of masters to their dependents.
   pure subroutine copy_to_dependents(self, inertia, cohesive)
@@ -294,4 +225,25 @@ contains
       end associate
     end do
   end subroutine copy_to_dependents
+
+  !> Writes or reads the history.
+  subroutine visit(self, archive, plate)
+    class(interface_stacks_t), intent(inout) :: self
+    class(archive_t), intent(inout) :: archive
+    type(composite_plate_t), intent(in) :: plate
+    real(wp) :: values(19, size(self%history))
+    integer :: i
+
+    do i = 1, size(self%history)
+      associate (h => self%history(i))
+        values(:, i) = [h%forces, h%change, h%earlier, h%lost, h%rubbing, h%work, h%sticking]
+      end associate
+    end do
+    call plate%visit_points(archive, 'explicit/interfaces', values, vector_fields([1, 4, 7, 16, 18]))
+    do i = 1, size(self%history)
+      associate (v => values(:, i))
+        self%history(i) = jump_history_t(v(1:3), v(4:6), v(7:9), v(10:11), v(12:14), v(15), v(16:19))
+      end associate
+    end do
+  end subroutine visit
 end module interface_stacks

@@ -31,6 +31,8 @@ module nodal_inertia
     integer, allocatable :: sprung(:)
     !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
     real(wp), allocatable :: inverse(:, :)
+    !> Product of the step for which it was found and the mean of it and the step before
+    real(wp) :: step_square = 0
     !> Dependent points and their masters, (dependents)
     integer, allocatable :: dependents(:), masters(:)
     !> True for dependent points, (points)
@@ -130,11 +132,11 @@ contains
   !> Computes the inverse for a step length, with the stiffness of springs times its square.
   pure subroutine invert(self, step_square)
     class(nodal_inertia_t), intent(inout) :: self
-    !> Product of the step and the mean of it and the step before
     real(wp), intent(in) :: step_square
     real(wp) :: added(5)
     integer :: i
 
+    self%step_square = step_square
     added = 0
     do i = 1, size(self%mass, 2)
       if (allocated(self%springs)) added = step_square*self%springs(:, i)
@@ -151,8 +153,8 @@ contains
   pure subroutine add_spring_forces(self, step, u, v, force)
     class(nodal_inertia_t), intent(in) :: self
     real(wp), intent(in) :: step
-    !> Unknowns and their rates, (5, points)
-    real(wp), intent(in) :: u(:, :), v(:, :)
+    real(wp), intent(in) :: u(:, :)
+    real(wp), intent(in) :: v(:, :)
     !> Forces on the layers, (5, points)
     real(wp), intent(inout) :: force(:, :)
     integer :: i, p

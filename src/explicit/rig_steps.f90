@@ -17,6 +17,7 @@ module rig_steps
   use field_mappings, only: area_field
   use interface_stacks, only: last_layer
   use kinds, only: wp
+  use listed_points, only: listed_points_t
   use composite_plates, only: composite_plate_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
@@ -30,8 +31,10 @@ module rig_steps
 
   !> Support points of circular frames, the same list on every rank.
   type :: circle_frames_t
-    !> Mesh points of the three nodes of each, (3, crossings), and their indices on this rank; 0: on another rank
-    integer, allocatable :: points(:, :), local(:, :)
+    !> Mesh points of the three nodes of each, (3, crossings)
+    integer, allocatable :: points(:, :)
+    !> The same in one list
+    type(listed_points_t) :: list
     !> Weights of their w, (3, crossings)
     real(wp), allocatable :: weights(:, :)
     !> The rig of each
@@ -90,8 +93,8 @@ contains
       end do
     end if
     if (size(self%rig) > 0) call replace_dependents(plate, self%points)
-    self%local = reshape(plate%distribution%local([self%points]), shape(self%points))
-    where (self%local > plate%distribution%owned) self%local = 0
+    self%list%local = plate%distribution%local([self%points])
+    where (self%list%local > plate%distribution%owned) self%list%local = 0
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
 
@@ -124,7 +127,8 @@ contains
     integer :: i, j, k, l
 
     if (size(self%rig) == 0) return
-    self%inverse = gathered(self, plate, inverse_of_nodes(plate%map%above, inverse))
+    self%inverse = reshape(self%list%gathered(plate%communicator, inverse_of_nodes(plate%map%above, inverse)), &
+                           shape(self%points))
     matrix = 0
     do j = 1, size(self%rig)
       do i = 1, size(self%rig)
@@ -176,28 +180,6 @@ contains
     end do
   end function inverse_of_nodes
 
-  !> Values at the nodes of all points, the same on every rank. Collective.
-  function gathered(self, plate, values)
-    type(circle_frames_t), intent(in) :: self
-    type(composite_plate_t), intent(in) :: plate
-    !> (points)
-    real(wp), intent(in) :: values(:)
-    !> (3, crossings)
-    real(wp) :: gathered(3, size(self%rig))
-    real(wp) :: list(3*size(self%rig))
-    integer :: i, k
-
-    gathered = 0
-    do i = 1, size(self%rig)
-      do k = 1, 3
-        if (self%local(k, i) > 0) gathered(k, i) = values(self%local(k, i))
-      end do
-    end do
-    list = reshape(gathered, [size(list)])
-    call plate%communicator%sum(list)
-    gathered = reshape(list, shape(gathered))
-  end function gathered
-
   !> Enforces zero deflection of the points at the end of a step. Collective.
   subroutine constrain(self, plate, steps, w, rate)
     !> The points; receive their forces
@@ -210,13 +192,16 @@ contains
     integer :: i, k
 
     if (size(self%rig) == 0) return
-    self%forces = matmul(self%stiffness, sum(self%weights*gathered(self, plate, w), 1))/(steps%now*steps%mean())
+    self%forces = matmul(self%stiffness, sum(self%weights*reshape(self%list%gathered(plate%communicator, w), &
+                                                                  shape(self%points)), 1))/(steps%now*steps%mean())
     do i = 1, size(self%rig)
       do k = 1, 3
-        if (self%local(k, i) == 0) cycle
-        change = -steps%mean()*self%inverse(k, i)*self%weights(k, i)*self%forces(i)
-        rate(self%local(k, i)) = rate(self%local(k, i)) + change
-        w(self%local(k, i)) = w(self%local(k, i)) + steps%now*change
+        associate (p => self%list%local(3*i - 3 + k))
+          if (p == 0) cycle
+          change = -steps%mean()*self%inverse(k, i)*self%weights(k, i)*self%forces(i)
+          rate(p) = rate(p) + change
+          w(p) = w(p) + steps%now*change
+        end associate
       end do
     end do
   end subroutine constrain

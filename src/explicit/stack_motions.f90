@@ -4,17 +4,14 @@ module stack_motions
   use element_batches, only: lanes
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
-  use layer_motions, only: accelerate_layers, find_rates, find_resultants, find_velocities
   use line_steps, only: line_steps_t
   use composite_plates, only: composite_plate_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: stack_batches_t, load_states, new_stack_batches, stack_batch_t, store_states, &
-                           surface_states_t
-  use stack_solutions, only: friction_t, solve_damaged, solve_intact
+  use stack_batches, only: layer_lanes_t, load_layers, new_stack_batches, stack_batch_t, stack_batches_t, store_layers
+  use stack_solutions, only: solve_damaged, solve_intact, solve_tractions
   use stack_updates, only: start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
-  use tridiagonal_systems, only: solve_tractions
   use weighted_jumps, only: newest, past_jumps
   implicit none
   private
@@ -26,7 +23,7 @@ module stack_motions
     type(nodal_inertia_t) :: inertia
     !> Forces on the layers without tractions, (5, points); at the end of a step loads minus internal forces
     real(wp), allocatable :: force(:, :)
-    !> Nodes with several layers
+    !> Nodes with their layers
     type(interface_stacks_t) :: stacks
     !> Batches of stacks; unallocated: to be formed for the step
     type(stack_batches_t), allocatable :: batches
@@ -46,8 +43,8 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> The interfaces; receive the growth of damage
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns and their rates, (5, points)
-    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
+    real(wp), contiguous, intent(inout) :: u(:, :)
+    real(wp), contiguous, intent(inout) :: v(:, :)
     type(stack_batches_t), allocatable :: batches
     integer :: b
 
@@ -55,12 +52,16 @@ contains
     if (allocated(batches)) then
       call batches%move_damaged(nodes%stacks, nodes%inertia, plate)
     else
-      batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, are_constrained(nodes), &
-                                  nodes%steps%now*nodes%steps%mean())
+      batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, are_constrained(nodes))
     end if
-    call nodes%stacks%history%begin_step()
     do b = 1, batches%filled
-      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, plate, cohesive, u, v)
+      associate (batch => batches%list(b))
+        if (batch%n == 0 .and. .not. batch%constrained) then
+          call move_single(batch, size(u, 2), nodes%inertia%inverse, nodes%steps, nodes%force, u, v)
+        else if (batch%members > 0) then
+          call move_batch(batch, nodes, plate, cohesive, u, v)
+        end if
+      end associate
     end do
     call move_alloc(batches, nodes%batches)
   end subroutine move_stacks
@@ -75,218 +76,255 @@ contains
 
     do i = 1, size(constrained)
       associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
-        constrained(i) = nodes%rigs%on_frame(first)
-        if (size(nodes%lines%dofs) == 0) cycle
-        constrained(i) = constrained(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
+        constrained(i) = nodes%rigs%on_frame(first) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
       end associate
     end do
   end function are_constrained
 
+  !> Updates unconstrained nodes with one layer, point by point: to load lanes would take longer.
+  pure subroutine move_single(batch, points, inverse, steps, force, u, v)
+    type(stack_batch_t), intent(in) :: batch
+    !> Number of points
+    integer, intent(in) :: points
+    !> Inverse inertia
+    real(wp), intent(in) :: inverse(7, points)
+    type(step_lengths_t), intent(in) :: steps
+    !> Forces on the layers
+    real(wp), intent(in) :: force(5, points)
+    !> Unknowns and their rates
+    real(wp), intent(inout) :: u(5, points), v(5, points)
+    real(wp) :: m(7), f(5), time
+    integer :: lane, p
+
+    time = steps%mean()
+    do lane = 1, batch%members
+      p = batch%first(lane)
+      m = inverse(:, p)
+      f = force(:, p)
+      v(:, p) = v(:, p) + [time*(m(1)*f(1) + m(2)*f(4)), time*(m(4)*f(2) + m(5)*f(5)), time*m(7)*f(3), &
+                           time*(m(2)*f(1) + m(3)*f(4)), time*(m(5)*f(2) + m(6)*f(5))]
+      u(:, p) = u(:, p) + steps%now*v(:, p)
+    end do
+  end subroutine move_single
+
   !> Updates the stacks of a batch.
   subroutine move_batch(batch, nodes, plate, cohesive, u, v)
     type(stack_batch_t), intent(in) :: batch
-    !> The nodes
+    !> The nodes; their stacks receive forces, changes of the jumps and losses
     type(nodal_steps_t), intent(inout) :: nodes
     type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns and their rates, (5, points)
-    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
-    real(wp), dimension(lanes, 5, batch%n + 1) :: displacement, rates, loads, velocity
-    real(wp), dimension(lanes, 3, batch%n) :: jumps, trial, tractions, before, change, last
-    real(wp) :: lost(lanes, 2, batch%n), normal(lanes, batch%n), given(lanes, 3, batch%n)
-    type(surface_states_t) :: states(batch%n)
-    type(friction_t) :: friction(batch%n)
-
-    associate (n => batch%n, history => nodes%stacks%history, points => size(u, 2), steps => nodes%steps)
-      call take(5, points, u, batch%first, n + 1, displacement)
-      call take(3, points, history%earlier, batch%first + 1, n, last)
-      call take(3, points, history%change, batch%first + 1, n, change)
-      call take(3, points, history%forces, batch%first + 1, n, before)
-      call take(2, points, history%lost, batch%first + 1, n, lost)
-      jumps = displacement(:, :3, 2:)
-      call find_free_motion(batch, nodes, v, velocity, rates)
-      trial = jumps + steps%now*rates(:, :3, 2:)
-      if (batch%damaged) then
-        call load_states(batch, cohesive, history, jumps, last, change, states)
-        call solve_damaged(batch, states, steps, plate, cohesive, trial, tractions, friction, normal, given)
-      else
-        call solve_intact(n, batch%factors, jumps, last, change, trial, tractions)
-        if (batch%constrained) call weigh_openings(n, batch%stiffness, jumps, last, change, normal, given)
-      end if
-      if (batch%constrained) &
-        call stop_at_frames(batch, nodes%rigs, steps, displacement, velocity, normal, given, trial, tractions)
-      call find_resultants(n, batch%height, tractions, loads)
-      call accelerate_layers(n + 1, batch%inverse, steps%mean(), loads, velocity)
-      if (batch%constrained) call record_reactions(batch, nodes, v, loads, velocity)
-      call find_rates(n, batch%height, velocity, rates)
-      change = steps%now*rates(:, :3, 2:)
-      displacement = displacement + steps%now*rates
-      if (batch%damaged) then
-        call update_damaged(batch, states, steps, plate, cohesive, change, tractions, before, friction, lost)
-        call store_states(batch, states, cohesive, history)
-      else
-        call update_intact(batch, steps, jumps, change, last, tractions, before, lost)
-      end if
-      call put(5, points, displacement, batch%first, n + 1, batch%members, u)
-      call put(5, points, rates, batch%first, n + 1, batch%members, v)
-      call put(3, points, change, batch%first + 1, n, batch%members, history%change)
-      call put(3, points, tractions, batch%first + 1, n, batch%members, history%forces)
-      call put(2, points, lost, batch%first + 1, n, batch%members, history%lost)
-    end associate
-    if (.not. batch%damaged) call start_damage(batch, nodes%stacks, plate, displacement, cohesive, u)
-  end subroutine move_batch
-
-  !> Velocities of layers, and rates of the unknowns, at the end of a step without tractions.
-  pure subroutine find_free_motion(batch, nodes, v, velocity, rates)
-    type(stack_batch_t), intent(in) :: batch
-    !> The nodes
-    type(nodal_steps_t), intent(in) :: nodes
-    !> Rates of the unknowns at the start, (5, points)
-    real(wp), contiguous, intent(in) :: v(:, :)
-    !> Velocities of the layers, and rates of the unknowns
-    real(wp), dimension(lanes, 5, batch%n + 1), intent(out) :: velocity, rates
-    real(wp) :: loads(lanes, 5, batch%n + 1)
-    integer :: lane, l, p
-
-    call take(5, size(v, 2), v, batch%first, batch%n + 1, rates)
-    call take(5, size(v, 2), nodes%force, batch%first, batch%n + 1, loads)
-    call find_velocities(batch%n, batch%height, rates, velocity)
-    call accelerate_layers(batch%n + 1, batch%inverse, nodes%steps%mean(), loads, velocity)
-    if (batch%constrained .and. size(nodes%lines%dofs) > 0) then
-      do lane = 1, batch%members
-        do l = 1, batch%n + 1
-          p = batch%first(lane) + l - 1
-          if (nodes%lines%is_prescribed(p)) call nodes%lines%prescribe(p, velocity(lane, :, l))
-        end do
-      end do
-    end if
-    call find_rates(batch%n, batch%height, velocity, rates)
-  end subroutine find_free_motion
-
-  !> Force per opening and given part of the normal forces of undamaged stacks, for frames.
-  pure subroutine weigh_openings(n, stiffness, jumps, last, earlier, normal, given)
-    !> Number of interfaces
-    integer, intent(in) :: n
-    !> Stiffness of shear and opening
-    real(wp), intent(in) :: stiffness(lanes, 2, n)
-    !> Jumps at the start, and their changes in the last step and in the one before
-    real(wp), dimension(lanes, 3, n), intent(in) :: jumps, last, earlier
-    !> Force per opening, and given parts of the forces; those along the jumps are not used
-    real(wp), intent(out) :: normal(lanes, n), given(lanes, 3, n)
+    real(wp), contiguous, intent(inout) :: u(:, :)
+    real(wp), contiguous, intent(inout) :: v(:, :)
+    type(layer_lanes_t) :: layers(0:batch%n)
     integer :: j
 
-    normal = newest*stiffness(:, 2, :)
-    given = 0
-    do j = 1, n
-      given(:, 3, j) = stiffness(:, 2, j)*past_jumps(jumps(:, 3, j), last(:, 3, j), earlier(:, 3, j))
+    associate (history => nodes%stacks%history, points => size(u, 2), steps => nodes%steps)
+      call load_layers(batch, points, u, v, nodes%force, history, cohesive, layers)
+      call find_velocities(batch, layers)
+      do j = 0, batch%n
+        call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
+      end do
+      if (batch%constrained) call prescribe(batch, nodes%lines, layers)
+      call find_rates(batch, layers)
+      do j = 1, batch%n
+        layers(j)%trial = layers(j)%u(:, :3) + steps%now*layers(j)%rates(:, :3)
+      end do
+      if (batch%damaged) then
+        call solve_damaged(batch, steps, plate, cohesive, layers)
+      else
+        call solve_intact(batch, layers)
+      end if
+      if (batch%constrained) call stop_at_frames(batch, nodes%rigs, steps, layers)
+      call find_resultants(batch, layers)
+      do j = 0, batch%n
+        call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
+      end do
+      if (batch%constrained) call record_reactions(batch, nodes, layers)
+      call find_rates(batch, layers)
+      do j = 1, batch%n
+        layers(j)%change = steps%now*layers(j)%rates(:, :3)
+      end do
+      if (batch%damaged) then
+        call update_damaged(batch, steps, plate, cohesive, layers)
+      else
+        call update_intact(batch, steps, layers)
+      end if
+      do j = 0, batch%n
+        layers(j)%u = layers(j)%u + steps%now*layers(j)%rates
+      end do
+      call store_layers(batch, points, layers, u, v, history, cohesive)
+    end associate
+    if (.not. batch%damaged) call start_damage(batch, layers, nodes%stacks, plate, cohesive, u)
+  end subroutine move_batch
+
+  !> Velocities of the layers from the rates of the unknowns.
+  pure subroutine find_velocities(batch, layers)
+    type(stack_batch_t), intent(in) :: batch
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: j
+
+    layers(0)%velocity = layers(0)%rates
+    do j = 1, batch%n
+      call relate(1.0_wp, batch%layers(j)%height, layers(j - 1)%velocity, layers(j)%rates, layers(j)%velocity)
     end do
-  end subroutine weigh_openings
+    do j = 0, batch%n
+      layers(j)%start = layers(j)%velocity
+    end do
+  end subroutine find_velocities
+
+  !> Rates of the unknowns from the velocities of the layers.
+  pure subroutine find_rates(batch, layers)
+    type(stack_batch_t), intent(in) :: batch
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: j
+
+    layers(0)%rates = layers(0)%velocity
+    do j = 1, batch%n
+      call relate(-1.0_wp, batch%layers(j)%height, layers(j - 1)%velocity, layers(j)%velocity, layers(j)%rates)
+    end do
+  end subroutine find_rates
+
+  !> Adds the motion at an interface of the layer above to that of a layer, or subtracts it. As arguments the arrays are
+  !> known not to overlap, so that the operations are vectorized, here and in `accelerate`.
+  pure subroutine relate(sign, z, above, from, to)
+    !> 1 or -1, height of the interface, and velocity of the layer above
+    real(wp), intent(in) :: sign, z(lanes), above(lanes, 5)
+    !> Rates of the unknowns, or velocity of the layer
+    real(wp), intent(in) :: from(lanes, 5)
+    !> Velocity of the layer, or rates of the unknowns
+    real(wp), intent(out) :: to(lanes, 5)
+
+    to(:, 1) = from(:, 1) + sign*above(:, 1) + z*(sign*(above(:, 4) - from(:, 4)))
+    to(:, 2) = from(:, 2) + sign*above(:, 2) + z*(sign*(above(:, 5) - from(:, 5)))
+    to(:, 3) = from(:, 3) + sign*above(:, 3)
+    to(:, 4:5) = from(:, 4:5)
+  end subroutine relate
+
+  !> Adds the change of the velocity of a layer by forces during a time.
+  pure subroutine accelerate(m, time, f, v)
+    !> Inverse inertia
+    real(wp), intent(in) :: m(lanes, 7)
+    real(wp), intent(in) :: time
+    !> Forces
+    real(wp), intent(in) :: f(lanes, 5)
+    !> Velocity
+    real(wp), intent(inout) :: v(lanes, 5)
+
+    v(:, 1) = v(:, 1) + time*(m(:, 1)*f(:, 1) + m(:, 2)*f(:, 4))
+    v(:, 4) = v(:, 4) + time*(m(:, 2)*f(:, 1) + m(:, 3)*f(:, 4))
+    v(:, 2) = v(:, 2) + time*(m(:, 4)*f(:, 2) + m(:, 5)*f(:, 5))
+    v(:, 5) = v(:, 5) + time*(m(:, 5)*f(:, 2) + m(:, 6)*f(:, 5))
+    v(:, 3) = v(:, 3) + time*m(:, 7)*f(:, 3)
+  end subroutine accelerate
+
+  !> Forces of the tractions on the layers.
+  pure subroutine find_resultants(batch, layers)
+    type(stack_batch_t), intent(in) :: batch
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: j, k
+
+    do j = 0, batch%n
+      associate (force => layers(j)%force, above => layers(j)%forces)
+        force(:, :3) = -above
+        do k = 1, 2
+          force(:, k + 3) = -batch%layers(j)%height*above(:, k)
+        end do
+        if (j == batch%n) exit
+        associate (below => layers(j + 1)%forces)
+          force(:, :3) = force(:, :3) + below
+          do k = 1, 2
+            force(:, k + 3) = force(:, k + 3) + batch%layers(j + 1)%height*below(:, k)
+          end do
+        end associate
+      end associate
+    end do
+  end subroutine find_resultants
+
+  !> Sets the velocities of layers that lines prescribe.
+  pure subroutine prescribe(batch, lines, layers)
+    type(stack_batch_t), intent(in) :: batch
+    type(line_steps_t), intent(in) :: lines
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: lane, j
+
+    if (size(lines%points) == 0) return
+    do j = 0, batch%n
+      do lane = 1, batch%members
+        call lines%prescribe(batch%first(lane) + j, layers(j)%velocity(lane, :))
+      end do
+    end do
+  end subroutine prescribe
 
   !> Stops lowest layers at frames that they would penetrate.
-  pure subroutine stop_at_frames(batch, rigs, steps, displacement, velocity, normal, given, trial, forces)
+  pure subroutine stop_at_frames(batch, rigs, steps, layers)
     type(stack_batch_t), intent(in) :: batch
     type(rig_steps_t), intent(inout) :: rigs
     type(step_lengths_t), intent(in) :: steps
-    !> Unknowns at the start of the step, and velocities of the layers without tractions
-    real(wp), dimension(lanes, 5, batch%n + 1), intent(in) :: displacement, velocity
-    !> Force per opening, and given parts of the forces
-    real(wp), intent(in) :: normal(lanes, batch%n), given(lanes, 3, batch%n)
-    !> Jumps without tractions, and forces on the jumps
-    real(wp), dimension(lanes, 3, batch%n), intent(inout) :: trial, forces
-    real(wp), dimension(lanes, 3, batch%n) :: diagonal, stopped
-    real(wp) :: w(lanes), rate
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp), dimension(lanes) :: w, mobility, held
+    real(wp) :: normal(lanes, batch%n), given(lanes, batch%n), forces(lanes, batch%n), rate
     logical :: stops(lanes)
-    integer :: lane
+    integer :: lane, j
 
-    associate (n => batch%n, time => steps%mean())
-      stops = .false.
-      diagonal = batch%diagonal
-      do lane = 1, batch%members
-        w(lane) = sum(displacement(lane, 3, :))
-        rate = velocity(lane, 3, n + 1) - time*batch%inverse(lane, 7, n + 1)*forces(lane, 3, n)
-        stops(lane) = rigs%on_frame(batch%first(lane)) .and. w(lane) + steps%now*rate > 0
-        if (.not. stops(lane)) cycle
-        trial(lane, 3, n) = displacement(lane, 3, n + 1) - w(lane) - steps%now*velocity(lane, 3, n)
-        diagonal(lane, 3, n) = diagonal(lane, 3, n) - steps%now*time*batch%inverse(lane, 7, n + 1)
+    associate (lowest => layers(batch%n))
+      w = 0
+      do j = 0, batch%n
+        w = w + layers(j)%u(:, 3)
       end do
-      if (any(stops)) call solve_tractions(n, 3, normal, given, diagonal, batch%off_diagonal, trial, stopped)
+      mobility = steps%mean()*batch%layers(batch%n)%inverse(:, 7)
+      stops = rigs%on_frame(batch%first) &
+              .and. w + steps%now*(lowest%velocity(:, 3) - mobility*lowest%forces(:, 3)) > 0
+      if (any(stops) .and. batch%n > 0) then
+        do j = 1, batch%n
+          associate (layer => layers(j), stiffness => batch%layers(j)%stiffness(:, 2))
+            normal(:, j) = layer%normal
+            given(:, j) = layer%given(:, 3)
+            if (.not. batch%damaged) then
+              normal(:, j) = newest*stiffness
+              given(:, j) = stiffness*past_jumps(layer%u(:, 3), layer%past%change(:, 3), layer%past%earlier(:, 3))
+            end if
+            forces(:, j) = layer%forces(:, 3)
+          end associate
+        end do
+        where (stops) lowest%trial(:, 3) = lowest%u(:, 3) - w - steps%now*layers(batch%n - 1)%velocity(:, 3)
+        held = merge(steps%now*steps%mean()*batch%layers(batch%n)%inverse(:, 7), 0.0_wp, stops)
+        call solve_tractions(batch, 3, normal, given, held, layers)
+        do j = 1, batch%n
+          where (.not. stops) layers(j)%forces(:, 3) = forces(:, j)
+        end do
+      end if
       do lane = 1, batch%members
         if (.not. rigs%on_frame(batch%first(lane))) cycle
-        if (stops(lane)) forces(lane, 3, :) = stopped(lane, 3, :)
-        rate = velocity(lane, 3, n + 1) - time*batch%inverse(lane, 7, n + 1)*forces(lane, 3, n)
+        rate = lowest%velocity(lane, 3) - mobility(lane)*lowest%forces(lane, 3)
         if (stops(lane) .and. .not. w(lane) + steps%now*rate > 0) rate = -w(lane)/steps%now + tiny(rate)
-        call rigs%stop_at_frame(batch%first(lane), steps, batch%inverse(lane, 7, n + 1), w(lane), rate)
+        call rigs%stop_at_frame(batch%first(lane), steps, batch%layers(batch%n)%inverse(lane, 7), w(lane), rate)
+        if (batch%n == 0) lowest%velocity(lane, 3) = rate
       end do
     end associate
   end subroutine stop_at_frames
 
   !> Velocities of layers stopped by frames, and reactions of lines.
-  pure subroutine record_reactions(batch, nodes, v, resultants, velocity)
+  pure subroutine record_reactions(batch, nodes, layers)
     type(stack_batch_t), intent(in) :: batch
     !> The nodes; their lines receive the reactions
     type(nodal_steps_t), intent(inout) :: nodes
-    !> Rates of the unknowns at the start, (5, points)
-    real(wp), contiguous, intent(in) :: v(:, :)
-    !> Forces of the tractions on the layers
-    real(wp), intent(in) :: resultants(lanes, 5, batch%n + 1)
-    !> Velocities of the layers at the end
-    real(wp), intent(inout) :: velocity(lanes, 5, batch%n + 1)
-    real(wp), dimension(lanes, 5, batch%n + 1) :: rates, before
-    integer :: lane, l, p
+    !> Layers with their velocities at the end, and with the forces of the tractions
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: lane, j, p
 
     do lane = 1, batch%members
       p = batch%first(lane)
-      if (nodes%rigs%on_frame(p)) velocity(lane, 3, batch%n + 1) = nodes%rigs%approach(p)/nodes%steps%now
+      if (batch%n > 0 .and. nodes%rigs%on_frame(p)) &
+        layers(batch%n)%velocity(lane, 3) = nodes%rigs%approach(p)/nodes%steps%now
     end do
-    if (size(nodes%lines%dofs) == 0) return
-    call take(5, size(v, 2), v, batch%first, batch%n + 1, rates)
-    call find_velocities(batch%n, batch%height, rates, before)
-    do lane = 1, batch%members
-      do l = 1, batch%n + 1
-        p = batch%first(lane) + l - 1
-        if (nodes%lines%is_prescribed(p)) &
-          call nodes%lines%react(p, nodes%steps, nodes%inertia%mass(:, p), before(lane, :, l), velocity(lane, :, l), &
-                                 nodes%force(:, p) + resultants(lane, :, l))
+    if (size(nodes%lines%points) == 0) return
+    do j = 0, batch%n
+      do lane = 1, batch%members
+        p = batch%first(lane) + j
+        call nodes%lines%react(p, nodes%steps, nodes%inertia%mass(:, p), layers(j)%start(lane, :), &
+                               layers(j)%velocity(lane, :), nodes%force(:, p) + layers(j)%force(lane, :))
       end do
     end do
   end subroutine record_reactions
-
-  !> Values of consecutive points from the first of each lane on. In this module, and with arrays of explicit shape,
-  !> the loop over the values of a point is unrolled, here and in `put`.
-  pure subroutine take(values, points, field, first, rows, taken)
-    !> Number of values of a point, and of points
-    integer, intent(in) :: values, points
-    !> Values of all points
-    real(wp), intent(in) :: field(values, points)
-    !> The first point of each lane, and number of consecutive points
-    integer, intent(in) :: first(lanes), rows
-    !> Those of the lanes
-    real(wp), intent(out) :: taken(lanes, values, rows)
-    integer :: lane, l
-
-    do l = 1, rows
-      do lane = 1, lanes
-        taken(lane, :, l) = field(:, first(lane) + l - 1)
-      end do
-    end do
-  end subroutine take
-
-  !> Reverse of `take` for the lanes with a stack of their own.
-  pure subroutine put(values, points, taken, first, rows, members, field)
-    !> Number of values of a point, and of points
-    integer, intent(in) :: values, points
-    !> The first point of each lane, number of consecutive points, and number of lanes
-    integer, intent(in) :: first(lanes), rows, members
-    !> Values of the lanes
-    real(wp), intent(in) :: taken(lanes, values, rows)
-    !> Those of all points
-    real(wp), intent(inout) :: field(values, points)
-    integer :: lane, l
-
-    do l = 1, rows
-      do lane = 1, members
-        field(:, first(lane) + l - 1) = taken(lane, :, l)
-      end do
-    end do
-  end subroutine put
 end module stack_motions

@@ -1,5 +1,9 @@
 !> Forces between the layers of nodes at the end of a step, over lanes of stacks.
 !>
+!> A traction at one interface accelerates the layers above and below it, and so changes the jumps there and at the two
+!> adjacent interfaces. With the force lambda = k s + g on the jump s at the end of a step, s = s* - H C lambda, where
+!> s* is the jump without tractions and H the square of the step: (1 + k H C) lambda = k s* + g, theory (T7).
+!>
 !> Contact is a function of the jumps at the end of the step; cohesive tractions and friction are functions of weighted
 !> jumps, with the damage at the start, theory (T7) to (T9). Their stiffness therefore does not limit the step. Openings
 !> are solved first; their pressure limits friction in the same step (return mapping of the trial shear traction).
@@ -16,334 +20,305 @@ module stack_solutions
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
   use roundings, only: rounding
-  use stack_batches, only: stack_batch_t, surface_lanes_t, surface_states_t
+  use stack_batches, only: layer_constants_t, layer_lanes_t, stack_batch_t, surface_lanes_t
   use step_lengths, only: step_lengths_t
-  use tridiagonal_systems, only: solve_factored, solve_tractions
   use weighted_jumps, only: newest, past_jumps, past_openings, past_weights
   implicit none
   private
-  public :: friction_t, energy_of, may_grow, solve_damaged, solve_intact
+  public :: energy_of, may_grow, solve_damaged, solve_intact, solve_tractions
 
-  !> Friction of an interface in a step, a value for each lane.
-  type :: friction_t
-    !> Friction limit of this step, force
-    real(wp) :: limit(lanes)
-    !> Part of earlier elastic jumps in the weighted mean; elastic jumps at the end of the step
-    real(wp) :: past(lanes, 2), elastic(lanes, 2)
-    !> Friction force
-    real(wp) :: force(lanes, 2)
-    !> True: slips in this step
-    logical :: slips(lanes)
-  end type friction_t
+  !> Of layers that frames do not hold.
+  real(wp), parameter :: unheld(lanes) = 0
 
 contains
 
-  !> Forces of undamaged stacks.
-  pure subroutine solve_intact(n, factors, start, last, earlier, trial, forces)
-    !> Number of interfaces
-    integer, intent(in) :: n
-    !> Factors of the systems
-    real(wp), intent(in) :: factors(lanes, 2, 3, n)
-    !> Jumps at the start, and their changes in the last step and in the one before
-    real(wp), intent(in) :: start(lanes, 3, n), last(lanes, 3, n), earlier(lanes, 3, n)
-    !> Jumps at the end without tractions
-    real(wp), intent(in) :: trial(lanes, 3, n)
-    !> Forces on the jumps
-    real(wp), intent(out) :: forces(lanes, 3, n)
+  !> Forces of undamaged stacks, by the factors of their systems.
+  pure subroutine solve_intact(batch, layers)
+    type(stack_batch_t), intent(in) :: batch
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: j
 
-    ! `past_jumps`, expanded here to be vectorized.
-    forces = trial + (past_weights(1)*start - past_weights(2)*last - past_weights(3)*earlier)/newest
-    call solve_factored(n, factors, forces)
+    do j = 1, batch%n
+      associate (layer => layers(j), above => batch%layers(j - 1))
+        ! `past_jumps`, expanded here to be vectorized.
+        layer%forces = layer%trial + (past_weights(1)*layer%u(:, :3) - past_weights(2)*layer%past%change &
+                                      - past_weights(3)*layer%past%earlier)/newest
+        if (j > 1) layer%forces = layer%forces - above%multiplier*layers(j - 1)%forces
+      end associate
+    end do
+    do j = batch%n, 1, -1
+      associate (layer => layers(j), factors => batch%layers(j))
+        layer%forces = factors%pivot*layer%forces
+        if (j < batch%n) layer%forces = layer%forces - factors%multiplier*layers(j + 1)%forces
+      end associate
+    end do
   end subroutine solve_intact
 
-  !> Forces of damaged stacks, with corrections where damage grows.
-  pure subroutine solve_damaged(batch, states, steps, plate, cohesive, trial, forces, friction, normal, given)
+  !> Forces along one direction, for any stiffnesses, including zero, and given parts of the forces.
+  pure subroutine solve_tractions(batch, k, stiffness, given, lowest, layers)
     type(stack_batch_t), intent(in) :: batch
-    type(surface_states_t), intent(in) :: states(batch%n)
+    !> Direction, 1 to 3
+    integer, intent(in) :: k
+    !> Force per jump in this direction, and forces without it
+    real(wp), intent(in) :: stiffness(lanes, batch%n), given(lanes, batch%n)
+    !> Compliance that the lowest layer does not have: its own where it is held
+    real(wp), intent(in) :: lowest(lanes)
+    !> Layers with their jumps without tractions; receive the forces
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp) :: above(lanes, 0:batch%n), pivot(lanes), diagonal(lanes)
+    integer :: j
+
+    above(:, 0) = 0
+    do j = 1, batch%n
+      associate (layer => layers(j), beside => batch%layers(j - 1)%off_diagonal(:, k))
+        diagonal = batch%layers(j)%diagonal(:, k)
+        if (j == batch%n) diagonal = diagonal - lowest
+        pivot = 1 + stiffness(:, j)*(diagonal - beside*above(:, j - 1))
+        layer%forces(:, k) = (stiffness(:, j)*(layer%trial(:, k) - beside*layers(j - 1)%forces(:, k)) + given(:, j)) &
+                             /pivot
+        if (j < batch%n) above(:, j) = stiffness(:, j)*batch%layers(j)%off_diagonal(:, k)/pivot
+      end associate
+    end do
+    do j = batch%n - 1, 1, -1
+      layers(j)%forces(:, k) = layers(j)%forces(:, k) - above(:, j)*layers(j + 1)%forces(:, k)
+    end do
+  end subroutine solve_tractions
+
+  !> Forces of damaged stacks, with corrections where damage grows.
+  pure subroutine solve_damaged(batch, steps, plate, cohesive, layers)
+    type(stack_batch_t), intent(in) :: batch
     type(step_lengths_t), intent(in) :: steps
     type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Jumps at the end without tractions
-    real(wp), intent(in) :: trial(lanes, 3, batch%n)
-    !> Forces on the jumps
-    real(wp), intent(out) :: forces(lanes, 3, batch%n)
-    type(friction_t), intent(out) :: friction(batch%n)
-    !> Force per opening with the contacts found, and parts of the forces that do not depend on the jumps at the end
-    real(wp), intent(out) :: normal(lanes, batch%n), given(lanes, 3, batch%n)
-    real(wp) :: secant(lanes, 2, batch%n), jumps(lanes, 3, batch%n)
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
     logical :: grows(lanes), any_grows
-    integer :: j, lane
+    real(wp) :: jumps(lanes, 3, batch%n)
+    integer :: j, k, lane
 
-    call weigh_jumps(batch, states, secant, given, friction)
-    call solve_openings(batch, states, secant, given, trial, forces, friction, normal)
-    call solve_shears(batch, states, secant, given, trial, forces, friction)
+    do j = 1, batch%n
+      call weigh_jumps(batch%layers(j), layers(j))
+    end do
+    call solve_openings(batch, layers)
+    call solve_shears(batch, layers)
     if (cohesive%is_held) return
-    call find_jumps(batch, trial, forces, jumps)
+    do k = 1, 3
+      jumps(:, k, :) = jumps_of(batch, k, layers)
+    end do
     any_grows = .false.
     do j = 1, batch%n
-      grows = may_grow(batch%surfaces(j), states(j), jumps(:, :, j))
+      grows = may_grow(batch%layers(j), layers(j)%surfaces, jumps(:, :, j))
       if (.not. any(grows)) cycle
       do lane = 1, lanes
-        if (.not. grows(lane)) cycle
-        associate (p => batch%first(lane) + j)
-          call correct_force(cohesive%surfaces_of(plate, p), cohesive%points(p), batch%surfaces(j)%area(lane), &
-                             states(j)%work(lane), states(j)%start(lane, :), jumps(lane, :, j), &
-                             steps%kept*states(j)%last(lane, :), secant(lane, :, j), given(lane, :, j), grows(lane))
-        end associate
+        if (grows(lane)) call correct_force(batch, j, lane, steps, plate, cohesive, jumps(lane, :, j), layers(j), &
+                                            grows(lane))
       end do
       any_grows = any_grows .or. any(grows)
     end do
     if (.not. any_grows) return
-    call solve_openings(batch, states, secant, given, trial, forces, friction, normal)
-    call solve_shears(batch, states, secant, given, trial, forces, friction)
+    call solve_openings(batch, layers)
+    call solve_shears(batch, layers)
   end subroutine solve_damaged
 
   !> Stiffness of the weighted jumps and contribution of the earlier ones, with the damage at the start.
-  pure subroutine weigh_jumps(batch, states, secant, given, friction)
-    type(stack_batch_t), intent(in) :: batch
-    type(surface_states_t), intent(in) :: states(batch%n)
-    !> Force per jump at the end of the step, shear and opening, and the part of the forces that does not depend on
-    !> these jumps
-    real(wp), intent(out) :: secant(lanes, 2, batch%n), given(lanes, 3, batch%n)
-    !> Friction; receives the part of earlier elastic jumps
-    type(friction_t), intent(inout) :: friction(batch%n)
+  pure subroutine weigh_jumps(constants, layer)
+    type(layer_constants_t), intent(in) :: constants
+    type(layer_lanes_t), intent(inout) :: layer
     real(wp) :: intact(lanes)
-    integer :: j, k
+    integer :: k
 
-    do j = 1, batch%n
-      associate (state => states(j))
-        intact = 1 - state%damage
-        secant(:, 1, j) = intact*batch%stiffness(:, 1, j)
-        secant(:, 2, j) = intact*state%part*batch%stiffness(:, 2, j)
-        do k = 1, 2
-          friction(j)%past(:, k) = past_jumps(state%start(:, k) - state%slip(:, k), state%sticking(:, k), &
-                                              state%sticking(:, k + 2))
-          given(:, k, j) = secant(:, 1, j)*past_jumps(state%start(:, k), state%last(:, k), state%earlier(:, k))
-        end do
-        given(:, 3, j) = secant(:, 2, j)*merge( &
-          past_openings(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), &
-          past_jumps(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), batch%surfaces(j)%contact)
-        secant(:, :, j) = newest*secant(:, :, j)
-      end associate
-    end do
+    associate (surfaces => layer%surfaces, past => layer%past)
+      intact = 1 - surfaces%damage
+      layer%secant(:, 1) = intact*constants%stiffness(:, 1)
+      layer%secant(:, 2) = intact*surfaces%loosened*constants%stiffness(:, 2)
+      do k = 1, 2
+        surfaces%past_elastic(:, k) = past_jumps(layer%u(:, k) - surfaces%slip(:, k), past%sticking(:, k), &
+                                                 past%sticking(:, k + 2))
+        layer%given(:, k) = layer%secant(:, 1)*past_jumps(layer%u(:, k), past%change(:, k), past%earlier(:, k))
+      end do
+      layer%given(:, 3) = layer%secant(:, 2)*merge( &
+        past_openings(layer%u(:, 3), past%change(:, 3), past%earlier(:, 3)), &
+        past_jumps(layer%u(:, 3), past%change(:, 3), past%earlier(:, 3)), constants%contact)
+      layer%secant = newest*layer%secant
+    end associate
   end subroutine weigh_jumps
 
-  !> Forces normal to the surfaces. The active set of contacts is that of the last solution, until it no longer changes;
-  !> the law is monotonic, so the iteration converges. Lanes that have converged repeat their solution.
-  pure subroutine solve_openings(batch, states, secant, given, trial, forces, friction, normal)
+  !> Forces normal to the surfaces, and limits of friction. The active set of contacts is that of the last solution,
+  !> until it no longer changes; the law is monotonic, so the iteration converges. Lanes that have converged repeat
+  !> their solution.
+  pure subroutine solve_openings(batch, layers)
     type(stack_batch_t), intent(in) :: batch
-    type(surface_states_t), intent(in) :: states(batch%n)
-    !> Force per jump, and forces without it
-    real(wp), intent(in) :: secant(lanes, 2, batch%n), given(lanes, 3, batch%n)
-    !> Jumps at the end without tractions
-    real(wp), intent(in) :: trial(lanes, 3, batch%n)
-    !> Forces on the jumps; the normal ones are set
-    real(wp), intent(inout) :: forces(lanes, 3, batch%n)
-    !> Friction; receives its limit
-    type(friction_t), intent(inout) :: friction(batch%n)
-    !> Force per opening with the contacts found
-    real(wp), intent(out) :: normal(lanes, batch%n)
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp), dimension(lanes, batch%n) :: normal, given, openings
     logical :: closed(lanes, batch%n), now(lanes), changed
-    real(wp) :: reduction(lanes, batch%n)
     integer :: iteration, j
 
     do j = 1, batch%n
-      closed(:, j) = states(j)%start(:, 3) < 0 .and. batch%surfaces(j)%contact
+      closed(:, j) = layers(j)%u(:, 3) < 0 .and. batch%layers(j)%contact
+      given(:, j) = layers(j)%given(:, 3)
     end do
     do iteration = 0, batch%n + 1
-      normal = merge(batch%stiffness(:, 2, :), secant(:, 2, :), closed)
-      call solve_tractions(batch%n, 3, normal, given, batch%diagonal, batch%off_diagonal, trial, forces)
-      call find_reduction(batch, 3, forces, reduction)
+      do j = 1, batch%n
+        normal(:, j) = merge(batch%layers(j)%stiffness(:, 2), layers(j)%secant(:, 2), closed(:, j))
+      end do
+      call solve_tractions(batch, 3, normal, given, unheld, layers)
+      openings = jumps_of(batch, 3, layers)
       changed = .false.
       do j = 1, batch%n
-        now = trial(:, 3, j) - reduction(:, j) < 0 .and. batch%surfaces(j)%contact
+        now = openings(:, j) < 0 .and. batch%layers(j)%contact
         changed = changed .or. any(now .neqv. closed(:, j))
         closed(:, j) = now
       end do
       if (.not. changed) exit
     end do
     do j = 1, batch%n
-      friction(j)%limit = merge(batch%surfaces(j)%friction*states(j)%damage*max(0.0_wp, -forces(:, 3, j)), 0.0_wp, &
-                                batch%surfaces(j)%contact)
+      layers(j)%normal = normal(:, j)
+      layers(j)%surfaces%limit = merge(batch%layers(j)%friction*layers(j)%surfaces%damage &
+                                       *max(0.0_wp, -layers(j)%forces(:, 3)), 0.0_wp, batch%layers(j)%contact)
     end do
   end subroutine solve_openings
 
-  !> Jumps at the end of the step with the forces found.
-  pure subroutine find_jumps(batch, trial, forces, jumps)
-    type(stack_batch_t), intent(in) :: batch
-    !> Jumps without tractions, and forces
-    real(wp), intent(in) :: trial(lanes, 3, batch%n), forces(lanes, 3, batch%n)
-    !> Two shears and opening
-    real(wp), intent(out) :: jumps(lanes, 3, batch%n)
-    real(wp) :: reduction(lanes, batch%n)
-    integer :: k
-
-    do k = 1, 3
-      call find_reduction(batch, k, forces, reduction)
-      jumps(:, k, :) = trial(:, k, :) - reduction
-    end do
-  end subroutine find_jumps
-
-  !> Change of the jumps by the forces.
-  pure subroutine find_reduction(batch, k, forces, reduction)
+  !> Jumps in one direction at the end of the step with the forces found.
+  pure function jumps_of(batch, k, layers) result(jumps)
     type(stack_batch_t), intent(in) :: batch
     !> Direction, 1 to 3
     integer, intent(in) :: k
-    !> The forces
-    real(wp), intent(in) :: forces(lanes, 3, batch%n)
-    !> H C lambda
-    real(wp), intent(out) :: reduction(lanes, batch%n)
+    type(layer_lanes_t), intent(in) :: layers(0:batch%n)
+    real(wp) :: jumps(lanes, batch%n)
+    real(wp) :: reduction(lanes)
     integer :: j
 
-    reduction = batch%diagonal(:, k, :)*forces(:, k, :)
-    do j = 1, batch%n - 1
-      reduction(:, j) = reduction(:, j) + batch%off_diagonal(:, k, j)*forces(:, k, j + 1)
-      reduction(:, j + 1) = reduction(:, j + 1) + batch%off_diagonal(:, k, j)*forces(:, k, j)
+    do j = 1, batch%n
+      associate (constants => batch%layers(j))
+        reduction = constants%diagonal(:, k)*layers(j)%forces(:, k)
+        if (j > 1) reduction = reduction + batch%layers(j - 1)%off_diagonal(:, k)*layers(j - 1)%forces(:, k)
+        if (j < batch%n) reduction = reduction + constants%off_diagonal(:, k)*layers(j + 1)%forces(:, k)
+        jumps(:, j) = layers(j)%trial(:, k) - reduction
+      end associate
     end do
-  end subroutine find_reduction
+  end function jumps_of
 
   !> Tangential forces: of the cohesive law, and of friction with elastic sticking up to its limit.
-  pure subroutine solve_shears(batch, states, secant, given, trial, forces, friction)
+  pure subroutine solve_shears(batch, layers)
     type(stack_batch_t), intent(in) :: batch
-    type(surface_states_t), intent(in) :: states(batch%n)
-    !> Force per jump, and forces without it
-    real(wp), intent(in) :: secant(lanes, 2, batch%n), given(lanes, 3, batch%n)
-    !> Jumps at the end without tractions
-    real(wp), intent(in) :: trial(lanes, 3, batch%n)
-    !> Forces on the jumps; the tangential ones are set
-    real(wp), intent(inout) :: forces(lanes, 3, batch%n)
-    !> Friction with its limits; receives the forces
-    type(friction_t), intent(inout) :: friction(batch%n)
-    real(wp) :: stiffness(lanes, batch%n), parts(lanes, 3, batch%n), reduction(lanes, batch%n, 2), sticking(lanes)
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp) :: stiffness(lanes, batch%n), given(lanes, batch%n, 2), jumps(lanes, batch%n, 2), sticking(lanes)
     logical :: slips
     integer :: j, k
 
-    parts = given
     do j = 1, batch%n
-      sticking = merge(batch%stiffness(:, 1, j), 0.0_wp, friction(j)%limit > 0)
-      stiffness(:, j) = secant(:, 1, j) + newest*sticking
-      do k = 1, 2
-        parts(:, k, j) = parts(:, k, j) + sticking*(friction(j)%past(:, k) - newest*states(j)%slip(:, k))
-      end do
+      associate (surfaces => layers(j)%surfaces)
+        sticking = merge(batch%layers(j)%stiffness(:, 1), 0.0_wp, surfaces%limit > 0)
+        stiffness(:, j) = layers(j)%secant(:, 1) + newest*sticking
+        do k = 1, 2
+          given(:, j, k) = layers(j)%given(:, k) + sticking*(surfaces%past_elastic(:, k) - newest*surfaces%slip(:, k))
+        end do
+      end associate
     end do
-    call solve_both(batch, stiffness, parts, trial, forces)
     do k = 1, 2
-      call find_reduction(batch, k, forces, reduction(:, :, k))
+      call solve_tractions(batch, k, stiffness, given(:, :, k), unheld, layers)
+      jumps(:, :, k) = jumps_of(batch, k, layers)
     end do
     slips = .false.
     do j = 1, batch%n
-      do k = 1, 2
-        friction(j)%elastic(:, k) = trial(:, k, j) - reduction(:, j, k) - states(j)%slip(:, k)
-      end do
-      call return_to_limit(batch%stiffness(:, 1, j), friction(j))
-      if (.not. any(friction(j)%slips)) cycle
-      slips = .true.
-      stiffness(:, j) = merge(secant(:, 1, j), stiffness(:, j), friction(j)%slips)
-      do k = 1, 2
-        parts(:, k, j) = merge(given(:, k, j) + friction(j)%force(:, k), parts(:, k, j), friction(j)%slips)
-      end do
+      associate (surfaces => layers(j)%surfaces)
+        surfaces%elastic = jumps(:, j, :) - surfaces%slip
+        call return_to_limit(batch%layers(j)%stiffness(:, 1), surfaces)
+        if (.not. any(surfaces%slips)) cycle
+        slips = .true.
+        stiffness(:, j) = merge(layers(j)%secant(:, 1), stiffness(:, j), surfaces%slips)
+        do k = 1, 2
+          given(:, j, k) = merge(layers(j)%given(:, k) + surfaces%friction(:, k), given(:, j, k), surfaces%slips)
+        end do
+      end associate
     end do
-    if (slips) call solve_both(batch, stiffness, parts, trial, forces)
+    if (.not. slips) return
+    do k = 1, 2
+      call solve_tractions(batch, k, stiffness, given(:, :, k), unheld, layers)
+    end do
   end subroutine solve_shears
 
   !> Friction force of an elastic jump, returned to the limit.
-  pure subroutine return_to_limit(stiffness, friction)
+  pure subroutine return_to_limit(stiffness, surfaces)
     !> Stiffness of sticking surfaces, force per jump
     real(wp), intent(in) :: stiffness(lanes)
-    !> The friction of an interface, with the elastic jumps if the surfaces stick; receives force and elastic jumps
-    type(friction_t), intent(inout) :: friction
+    !> The surfaces with the elastic jumps if they stick; receive friction and elastic jumps
+    type(surface_lanes_t), intent(inout) :: surfaces
     real(wp) :: trial(lanes), part(lanes)
     integer :: k
 
     do k = 1, 2
-      friction%force(:, k) = merge(stiffness*(newest*friction%elastic(:, k) + friction%past(:, k)), 0.0_wp, &
-                                   friction%limit > 0)
+      surfaces%friction(:, k) = merge(stiffness*(newest*surfaces%elastic(:, k) + surfaces%past_elastic(:, k)), 0.0_wp, &
+                                      surfaces%limit > 0)
     end do
-    trial = sqrt(friction%force(:, 1)**2 + friction%force(:, 2)**2)
-    friction%slips = trial > friction%limit
-    if (.not. any(friction%slips)) return
-    part = merge(friction%limit/max(trial, tiny(trial)), 1.0_wp, friction%slips)
+    trial = sqrt(surfaces%friction(:, 1)**2 + surfaces%friction(:, 2)**2)
+    surfaces%slips = trial > surfaces%limit
+    if (.not. any(surfaces%slips)) return
+    part = merge(surfaces%limit/max(trial, tiny(trial)), 1.0_wp, surfaces%slips)
     do k = 1, 2
-      friction%force(:, k) = friction%force(:, k)*part
-      where (friction%slips) friction%elastic(:, k) = friction%force(:, k)/stiffness
+      surfaces%friction(:, k) = surfaces%friction(:, k)*part
+      where (surfaces%slips) surfaces%elastic(:, k) = surfaces%friction(:, k)/stiffness
     end do
   end subroutine return_to_limit
 
-  !> Solves along x and along y.
-  pure subroutine solve_both(batch, stiffness, given, trial, forces)
-    type(stack_batch_t), intent(in) :: batch
-    !> Stiffness, and given parts of the forces
-    real(wp), intent(in) :: stiffness(lanes, batch%n), given(lanes, 3, batch%n)
-    !> Jumps at the end without tractions
-    real(wp), intent(in) :: trial(lanes, 3, batch%n)
-    !> Forces on the jumps; the tangential ones are set
-    real(wp), intent(inout) :: forces(lanes, 3, batch%n)
-    integer :: k
-
-    do k = 1, 2
-      call solve_tractions(batch%n, k, stiffness, given, batch%diagonal, batch%off_diagonal, trial, forces)
-    end do
-  end subroutine solve_both
-
   !> False where jumps certainly do not increase the damage, as `may_grow` of `cohesive_points`.
-  pure function may_grow(surface, state, jumps) result(grows)
-    type(surface_lanes_t), intent(in) :: surface
-    type(surface_states_t), intent(in) :: state
-    !> Two shears and opening
+  pure function may_grow(constants, surfaces, jumps) result(grows)
+    type(layer_constants_t), intent(in) :: constants
+    type(surface_lanes_t), intent(in) :: surfaces
     real(wp), intent(in) :: jumps(lanes, 3)
-    !> One for each lane
     logical :: grows(lanes)
     real(wp) :: ratio(lanes)
 
-    ratio = state%failure_ratio/(state%failure_ratio - state%damage*(state%failure_ratio - 1))
-    grows = state%damage < 1 .and. .not. state%failure_ratio*energy_of(surface, state, jumps) &
-            < (1 - rounding)*surface%toughness*ratio**2
+    ratio = surfaces%failure_ratio/(surfaces%failure_ratio - surfaces%damage*(surfaces%failure_ratio - 1))
+    grows = surfaces%damage < 1 .and. .not. surfaces%failure_ratio*energy_of(constants, surfaces, jumps) &
+            < (1 - rounding)*constants%toughness*ratio**2
   end function may_grow
 
   !> Energy per area of jumps of an undamaged interface, without that of closing.
-  pure function energy_of(surface, state, jumps) result(energy)
-    type(surface_lanes_t), intent(in) :: surface
-    type(surface_states_t), intent(in) :: state
-    !> Two shears and opening
+  pure function energy_of(constants, surfaces, jumps) result(energy)
+    type(layer_constants_t), intent(in) :: constants
+    type(surface_lanes_t), intent(in) :: surfaces
     real(wp), intent(in) :: jumps(lanes, 3)
-    !> One for each lane
     real(wp) :: energy(lanes)
 
-    energy = (surface%shear*(jumps(:, 1)**2 + jumps(:, 2)**2) &
-              + state%opening*max(jumps(:, 3), 0.0_wp)**2)/2
+    energy = (constants%shear*(jumps(:, 1)**2 + jumps(:, 2)**2) + surfaces%opening*max(jumps(:, 3), 0.0_wp)**2)/2
   end function energy_of
 
   !> Corrects a force so that it does a given work over the mean motion of this step and the one before.
-  pure subroutine correct_force(surfaces, point, area, before, start, jumps, change, secant, given, grows)
-    !> The surfaces at the point, and its state
-    type(cohesive_surfaces_t), intent(in) :: surfaces
-    type(cohesive_point_t), intent(in) :: point
-    !> Area, and work on the law in the step before
-    real(wp), intent(in) :: area, before
-    !> Jumps at the start and at the end, and their change in the step before
-    real(wp), intent(in) :: start(3), jumps(3), change(3)
-    !> Force per jump, shear and opening
-    real(wp), intent(in) :: secant(2)
-    !> Given part of the force; is corrected
-    real(wp), intent(inout) :: given(3)
+  pure subroutine correct_force(batch, j, lane, steps, plate, cohesive, jumps, layer, grows)
+    type(stack_batch_t), intent(in) :: batch
+    !> Interface and lane
+    integer, intent(in) :: j, lane
+    type(step_lengths_t), intent(in) :: steps
+    type(composite_plate_t), intent(in) :: plate
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> Jumps at the end
+    real(wp), intent(in) :: jumps(3)
+    !> The layer; the given part of its force is corrected
+    type(layer_lanes_t), intent(inout) :: layer
     !> True: the damage grows
     logical, intent(out) :: grows
-    real(wp) :: moved(3), motion(3), force(3), damage, energy
+    type(cohesive_surfaces_t) :: surfaces
+    type(cohesive_point_t) :: point
+    real(wp) :: start(3), moved(3), motion(3), force(3), damage, energy
 
+    surfaces = cohesive%surfaces_of(plate, batch%first(lane) + j)
+    point = cohesive%points(batch%first(lane) + j)
     damage = grown_damage(surfaces%law, separation_of(surfaces%law, jumps), point)
     grows = damage > point%damage
+    start = layer%u(lane, :3)
     moved = jumps - start
     ! Jumps that are prescribed, as between prescribed layers, do no work, though flaws may damage the interface.
     if (.not. (grows .and. sum(moved**2) > 0)) return
-    energy = (area*surfaces%work(start, jumps, point, damage) + before)/2
-    motion = (moved + change)/2
-    force = secant([1, 1, 2])*opened(jumps) + given
+    energy = (batch%layers(j)%area(lane)*surfaces%work(start, jumps, point, damage) + layer%past%work(lane))/2
+    motion = (moved + steps%kept*layer%past%change(lane, :))/2
+    force = layer%secant(lane, [1, 1, 2])*opened(jumps) + layer%given(lane, :)
     if (.not. surfaces%closing) then
-      force(3) = secant(2)*jumps(3) + given(3)
+      force(3) = layer%secant(lane, 2)*jumps(3) + layer%given(lane, 3)
     else if (jumps(3) < 0) then
       motion(3) = 0
     end if
     ! Where a jump has reversed, its mean motion is small; the motion of this step limits the correction.
-    given = given + motion*((energy - sum(force*motion))/max(sum(motion**2), sum(moved**2)/4))
+    layer%given(lane, :) = layer%given(lane, :) &
+                           + motion*((energy - sum(force*motion))/max(sum(motion**2), sum(moved**2)/4))
   end subroutine correct_force
 end module stack_solutions

@@ -8,6 +8,7 @@ module struck_patches
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
   use models, only: model_t
+  use listed_points, only: listed_points_t
   use nose_contacts, only: nose_contact_t, nose_t
   implicit none
   private
@@ -15,8 +16,7 @@ module struck_patches
 
   !> The points within reach.
   type :: struck_patch_t
-    !> Index of each point among those of this rank; 0: on another rank, (reached)
-    integer, allocatable :: local(:)
+    type(listed_points_t) :: points
     !> Weights of the force distribution, their increase with the local depth, and inverse inertia of w, (reached)
     real(wp), allocatable :: weights(:), slopes(:), inverse(:)
     !> Force relative to that of a flat face with the same indentation, and area under pressure
@@ -27,11 +27,8 @@ module struck_patches
     type(nose_t), allocatable, private :: nose
   contains
     procedure :: find_deflections
-    procedure :: gather
     procedure :: find_indentation
     procedure :: touch
-    procedure :: add_force
-    procedure :: local_weights
     procedure :: visit
   end type struck_patch_t
 
@@ -47,16 +44,16 @@ contains
 
     if (allocated(model%nose)) then
       self%nose = model%nose%nose
-      self%local = model%nose%local
-      allocate (self%weights(size(self%local)), source=0.0_wp)
+      self%points = model%nose%points
+      allocate (self%weights(size(self%points%local)), source=0.0_wp)
     else
       weights = 0
       associate (partition => model%plate%distribution)
         weights(partition%points(:partition%owned)) = model%patch%weights(:partition%owned)
         call model%plate%communicator%sum(weights)
         reached = pack([(i, i=1, size(weights))], abs(weights) > 0)
-        self%local = partition%local(reached)
-        where (self%local > partition%owned) self%local = 0
+        self%points%local = partition%local(reached)
+        where (self%points%local > partition%owned) self%points%local = 0
       end associate
       self%weights = weights(reached)
     end if
@@ -73,33 +70,13 @@ contains
     !> At the struck point
     real(wp), intent(out) :: struck
     real(wp) :: list(size(w) + 1)
-    integer :: i
+    type(listed_points_t) :: points
 
-    list = 0
-    do i = 1, size(w)
-      if (self%local(i) > 0) list(i) = displacement(3, self%local(i))
-    end do
-    if (plate%struck%point > 0) list(size(list)) = displacement(3, plate%struck%point)
-    call plate%communicator%sum(list)
+    points%local = [self%points%local, plate%struck%point]
+    list = points%gathered(plate%communicator, displacement(3, :))
     w = list(:size(w))
     struck = list(size(list))
   end subroutine find_deflections
-
-  !> Gathers the inverse inertia of the points from their ranks. Collective.
-  subroutine gather(self, plate, inverse)
-    class(struck_patch_t), intent(inout) :: self
-    type(composite_plate_t), intent(in) :: plate
-    !> Inverse inertia of w, (points)
-    real(wp), intent(in) :: inverse(:)
-    integer :: i
-
-    if (.not. allocated(self%inverse)) allocate (self%inverse(size(self%local)))
-    self%inverse = 0
-    do i = 1, size(self%local)
-      if (self%local(i) > 0) self%inverse(i) = inverse(self%local(i))
-    end do
-    call plate%communicator%sum(self%inverse)
-  end subroutine gather
 
   !> Indentation at a position of the impactor: from the mean deflection of the patch, or by the contact of the nose,
   !> with which the force distribution changes.
@@ -143,37 +120,6 @@ contains
       self%offset = self%offset + (found - indentation)
     end do
   end subroutine touch
-
-  !> Adds the nodal forces of a force on the full plate.
-  pure subroutine add_force(self, multiplicity, force, forces)
-    class(struck_patch_t), intent(in) :: self
-    !> Models that make up the full plate
-    integer, intent(in) :: multiplicity
-    !> The force
-    real(wp), intent(in) :: force
-    !> Forces on the layers, (5, points)
-    real(wp), intent(inout) :: forces(:, :)
-    integer :: i
-
-    do i = 1, size(self%local)
-      if (self%local(i) > 0) forces(3, self%local(i)) = forces(3, self%local(i)) + force/multiplicity*self%weights(i)
-    end do
-  end subroutine add_force
-
-  !> Weights at this rank's points.
-  pure function local_weights(self, points) result(weights)
-    class(struck_patch_t), intent(in) :: self
-    !> Number of points of this rank
-    integer, intent(in) :: points
-    !> (points)
-    real(wp) :: weights(points)
-    integer :: i
-
-    weights = 0
-    do i = 1, size(self%local)
-      if (self%local(i) > 0) weights(self%local(i)) = self%weights(i)
-    end do
-  end function local_weights
 
   !> Saves or loads.
   subroutine visit(self, archive)

@@ -3,6 +3,7 @@
 module contact_areas
   use communicators, only: communicator_t
   use kinds, only: wp
+  use listed_points, only: listed_points_t
   use nose_contacts, only: nose_t, new_nose
   implicit none
   private
@@ -15,12 +16,9 @@ module contact_areas
   type :: contact_area_t
     !> Nose over the points
     type(nose_t) :: nose
-    !> Index of each point among those of this rank; 0: on another rank, (points)
-    integer, allocatable :: local(:)
+    type(listed_points_t) :: points
   contains
-    procedure :: deflections
     procedure :: first_contact
-    procedure :: to_local
     procedure :: area_of
   end type contact_area_t
 
@@ -39,25 +37,8 @@ contains
 
     is_reached = area > 0 .and. distance < radius
     self%nose = new_nose(radius, pack(area, is_reached), pack(distance, is_reached))
-    self%local = pack(local, is_reached)
+    self%points%local = pack(local, is_reached)
   end function new_contact_area
-
-  !> Deflections of the points, the same on every rank. Collective.
-  function deflections(self, communicator, w)
-    class(contact_area_t), intent(in) :: self
-    type(communicator_t), intent(in) :: communicator
-    !> Deflection of the struck face, (local points)
-    real(wp), intent(in) :: w(:)
-    !> (points)
-    real(wp), allocatable :: deflections(:)
-    integer :: i
-
-    allocate (deflections(size(self%local)), source=0.0_wp)
-    do i = 1, size(deflections)
-      if (self%local(i) > 0) deflections(i) = w(self%local(i))
-    end do
-    call communicator%sum(deflections)
-  end function deflections
 
   !> Position of the nose's tip at first contact. Collective.
   real(wp) function first_contact(self, communicator, w)
@@ -66,25 +47,8 @@ contains
     !> Deflection of the struck face, (local points)
     real(wp), intent(in) :: w(:)
 
-    first_contact = self%nose%first_contact(self%deflections(communicator, w))
+    first_contact = self%nose%first_contact(self%points%gathered(communicator, w))
   end function first_contact
-
-  !> Values of the points at this rank's points.
-  pure function to_local(self, values, points) result(field)
-    class(contact_area_t), intent(in) :: self
-    !> (points)
-    real(wp), intent(in) :: values(:)
-    !> Number of points of this rank
-    integer, intent(in) :: points
-    !> (local points); ghosts zero
-    real(wp) :: field(points)
-    integer :: i
-
-    field = 0
-    do i = 1, size(self%local)
-      if (self%local(i) > 0) field(self%local(i)) = values(i)
-    end do
-  end function to_local
 
   !> Area of the points with a weight, on the full plate. Collective.
   real(wp) function area_of(self, communicator, weights) result(area)
@@ -94,7 +58,7 @@ contains
     real(wp), intent(in) :: weights(:)
     real(wp), allocatable :: listed(:)
 
-    listed = self%deflections(communicator, weights)
+    listed = self%points%gathered(communicator, weights)
     area = sum(self%nose%area, mask=listed > min_weight*maxval(listed))
   end function area_of
 end module contact_areas

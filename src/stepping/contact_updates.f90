@@ -58,10 +58,10 @@ contains
 
     weights = model%patch%weights
     if (.not. indentation > 0) return
-    pressures = model%nose%nose%foundation(model%nose%deflections(model%plate%communicator, w), indentation)
+    pressures = model%nose%nose%foundation(model%nose%points%gathered(model%plate%communicator, w), indentation)
     ! If the indentation is below the round-off of the deflections, all pressures may be zero.
     if (.not. sum(pressures) > 0) return
-    weights = model%nose%to_local(pressures/sum(pressures), size(w))
+    weights = model%nose%points%to_local(pressures/sum(pressures), size(w))
     associate (patch => model%patch%weights)
       weights = merge(total_of(model%plate%communicator, merge(weights, 0.0_wp, patch > 0))*patch, weights, patch > 0)
     end associate

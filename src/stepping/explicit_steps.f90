@@ -75,9 +75,11 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (allocated(model%nose)) then
-      call now%impact%patch%spread(method%impact%patch%local_weights(size(model%patch%weights)), &
-                                   now%impact%patch%offset)
-      now%impact%patch%area = method%impact%patch%area
+      associate (patch => method%impact%patch)
+        call now%impact%patch%spread(patch%points%to_local(patch%weights, size(model%patch%weights)), &
+                                     now%impact%patch%offset)
+        now%impact%patch%area = patch%area
+      end associate
     end if
     call record_energies(method, model, now)
     now%interfaces%rig%found = method%rigs%reactions_of(model, method%force, now%motion%displacement)
