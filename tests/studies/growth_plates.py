@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Area, peak force and time of impacts by the cells, with growth by energy or by strengths.
-Usage: growth_plates.py run IMPLAM FOLDER DECK CELLS [CONTROL]  (DECK: peanut, which_interfaces,
-                                    experiments/t700_m21_6.5J or experiments/t800s_3900_2b_impact_15.5J; CELLS with commas, mm; CONTROL: energy or strength)
+Usage: growth_plates.py run IMPLAM FOLDER DECK CELLS [CONTROL]
 
+DECK is one of DECKS, CELLS are lengths in mm with commas, CONTROL is energy or strength.
 The patch has its size on all meshes, the elements outside of the core their number. `run` adds a row to
 growth/plates.csv for each mesh that has none, so that a stopped command continues. Times are processor times."""
 
