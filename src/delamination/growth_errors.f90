@@ -25,9 +25,9 @@ module growth_errors
     ! Written by growth_table.py.
     growth_errors_t(0.0_wp, 22, [-6, 4], 0, [0, 0], [0, 0]), &
     growth_errors_t(0.25_wp, 17, [-6, 2], 0, [0, 0], [0, 0]), &
-    growth_errors_t(0.4_wp, 14, [-6, 2], 10, [-3, 18], [-2, 6]), &
-    growth_errors_t(0.5_wp, 12, [-6, 2], 8, [-3, 18], [-1, 5]), &
-    growth_errors_t(1.0_wp, 5, [-1, 2], 3, [-3, 1], [0, 1]), &
+    growth_errors_t(0.4_wp, 14, [-6, 2], 10, [-2, 18], [-2, 5]), &
+    growth_errors_t(0.5_wp, 12, [-6, 2], 8, [-2, 18], [-1, 4]), &
+    growth_errors_t(1.0_wp, 5, [-1, 2], 3, [-2, 1], [0, 1]), &
     growth_errors_t(1.7_wp, 3, [0, 2], 1, [1, 1], [1, 1]), &
     growth_errors_t(2.5_wp, 1, [0, 0], 0, [0, 0], [0, 0])]
     ! End of the table.
