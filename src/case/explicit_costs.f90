@@ -27,12 +27,13 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_size_t), intent(in) :: model_size
     character(len=:), allocatable :: sentence
-    real(wp) :: steps, step, seconds
+    real(wp) :: end, steps, step, seconds
     character(len=:), allocatable :: bound, time_bound
     logical :: lengthened
 
-    steps = expected_steps(deck)
-    step = expected_end(deck)/steps
+    end = expected_end(deck)
+    steps = steps_until(deck, end)
+    step = end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
     ! Damage lengthens the contact by a time that is known roughly.
@@ -53,8 +54,16 @@ contains
   real(wp) function expected_steps(deck) result(steps)
     type(deck_t), intent(in) :: deck
 
-    steps = expected_end(deck)/deck%stepping%time%step*shortened(deck)
+    steps = steps_until(deck, expected_end(deck))
   end function expected_steps
+
+  !> Expected number of steps up to a time.
+  real(wp) function steps_until(deck, end) result(steps)
+    type(deck_t), intent(in) :: deck
+    real(wp), intent(in) :: end
+
+    steps = end/deck%stepping%time%step*shortened(deck)
+  end function steps_until
 
   !> Expected end of a run: that of the deck, or later where the run continues until the impactor has left and the plate
   !> is at rest. A contact longer than the deck's end is found by an elastic impact of its own.

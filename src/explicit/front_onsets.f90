@@ -5,7 +5,7 @@ module front_onsets
   use cohesive_laws, only: cohesive_law_t
   use delamination_parameters, only: growth_by_energy, law_cohesive
   use energy_onsets, only: onset_share, reduce_law, release_over_toughness
-  use front_stencils, only: ahead, behind, create_front_stencils, far_behind, front_stencils_t, image_signs
+  use front_stencils, only: ahead, behind, create_front_stencils, far_behind, front_stencils_t, jump_signs
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
@@ -131,7 +131,7 @@ contains
     type(front_onsets_t), intent(in) :: self
     !> The law of the undamaged interface
     type(cohesive_law_t), intent(in) :: law
-    !> The point of the mesh, those ahead and behind, and their columns of `image_signs`
+    !> The point of the mesh, those ahead and behind, and their columns of `jump_signs`
     integer, intent(in) :: point, near(3), images(3)
     !> Lengths that belong to the point and to the node ahead
     real(wp), intent(in) :: widths(2)
@@ -149,13 +149,13 @@ contains
     type(front_onsets_t), intent(in) :: self
     !> Indices of the values
     integer, intent(in) :: which(3)
-    !> The point of the mesh, and its column of `image_signs`
+    !> The point of the mesh, and its column of `jump_signs`
     integer, intent(in) :: point, image
     !> Two shears and opening
     real(wp) :: vector(3)
 
     vector = 0
     if (point == 0) return
-    vector = image_signs(:, image)*self%values(which, point)
+    vector = jump_signs(:, image)*self%values(which, point)
   end function taken
 end module front_onsets

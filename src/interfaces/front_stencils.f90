@@ -15,7 +15,7 @@ module front_stencils
   integer, parameter, public :: ahead = 1, behind = 2, far_behind = 3
   !> Signs of the jumps and tractions, two shears and opening, of a point itself, of its images mirrored in x and in y,
   !> and of its image under point symmetry.
-  real(wp), parameter, public :: image_signs(3, 0:3) = reshape(real([1, 1, 1, -1, 1, 1, 1, -1, 1, -1, -1, 1], wp), &
+  real(wp), parameter, public :: jump_signs(3, 0:3) = reshape(real([1, 1, 1, -1, 1, 1, 1, -1, 1, -1, -1, 1], wp), &
                                                                [3, 4])
 
   !> The stencils of this rank's points.
@@ -24,7 +24,7 @@ module front_stencils
     integer, allocatable :: points(:)
     !> Points of the mesh ahead, behind and two behind; 0: none, (3, directions, n)
     integer, allocatable :: near(:, :, :)
-    !> Which of them are images by symmetry, and of which kind: columns of `image_signs`, (3, directions, n)
+    !> Which of them are images by symmetry, and of which kind: columns of `jump_signs`, (3, directions, n)
     integer, allocatable :: images(:, :, :)
     !> Lengths along the direction that belong to the point and to the node ahead, (2, directions, n)
     real(wp), allocatable :: widths(:, :, :)
@@ -83,7 +83,7 @@ contains
     integer, intent(in) :: point
     !> Points ahead and behind, (3, directions)
     integer, intent(out) :: near(3, 4)
-    !> Columns of `image_signs`, (3, directions)
+    !> Columns of `jump_signs`, (3, directions)
     integer, intent(out) :: images(3, 4)
     !> Lengths, (2, directions)
     real(wp), intent(out) :: widths(2, 4)
@@ -112,7 +112,7 @@ contains
     integer, intent(in) :: lines(2)
     !> The point, or that whose image is there; 0: none
     integer, intent(out) :: point
-    !> Column of `image_signs`
+    !> Column of `jump_signs`
     integer, intent(out) :: image
     integer :: at(2)
 
@@ -133,7 +133,7 @@ contains
     integer, intent(in) :: lines(2)
     !> The lines of the model; themselves if they are
     integer, intent(out) :: at(2)
-    !> Column of `image_signs`, whose bits are the mirrored directions
+    !> Column of `jump_signs`, whose bits are the mirrored directions
     integer, intent(out) :: image
     integer :: k
 
