@@ -60,8 +60,10 @@ module central_differences
     real(wp), allocatable :: strain(:, :)
     !> Work of loads before the run began
     real(wp) :: initial_work = 0
-    !> Work arrays: motion of the layers, and forces including those at borders between ranks
-    real(wp), allocatable, private :: motion(:, :), field(:, :)
+    !> Motion of the layers
+    real(wp), allocatable :: motion(:, :)
+    !> Work array: forces including those at borders between ranks
+    real(wp), allocatable, private :: field(:, :)
   contains
     procedure :: start
     procedure :: longest_step

@@ -250,7 +250,8 @@ contains
   end function coupling
 
   !> Loads the layers of a batch at the start of a step. Arrays of explicit shape let the loop over the values of a
-  !> point be unrolled, here and in `store_layers`.
+  !> point be unrolled, and the points of a stack are read one after the other, as they lie in memory, here and in
+  !> `store_layers`.
   pure subroutine load_layers(batch, points, u, v, force, history, cohesive, layers)
     type(stack_batch_t), intent(in) :: batch
     !> Number of points
@@ -263,9 +264,9 @@ contains
     integer :: lane, j, p
 
     layers(0)%forces = 0
-    do j = 0, batch%n
-      associate (layer => layers(j), past => layers(j)%past, surfaces => layers(j)%surfaces)
-        do lane = 1, lanes
+    do lane = 1, lanes
+      do j = 0, batch%n
+        associate (layer => layers(j), past => layers(j)%past, surfaces => layers(j)%surfaces)
           p = batch%first(lane) + j
           layer%u(lane, :) = u(:, p)
           layer%rates(lane, :) = v(:, p)
@@ -285,9 +286,9 @@ contains
           surfaces%heat(lane) = cohesive%points(p)%sliding%heat
           surfaces%loosened(lane) = cohesive%opening(p)
           surfaces%failure_ratio(lane) = batch%layers(j)%failure_ratio(lane)/cohesive%strength(p)**2
-        end do
-        if (batch%damaged .and. j > 0) surfaces%opening = surfaces%loosened*batch%layers(j)%opening
-      end associate
+          surfaces%opening(lane) = surfaces%loosened(lane)*batch%layers(j)%opening(lane)
+        end associate
+      end do
     end do
   end subroutine load_layers
 
@@ -303,9 +304,9 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     integer :: lane, j, p
 
-    do j = 0, batch%n
-      associate (layer => layers(j), past => layers(j)%past, surfaces => layers(j)%surfaces)
-        do lane = 1, batch%members
+    do lane = 1, batch%members
+      do j = 0, batch%n
+        associate (layer => layers(j), past => layers(j)%past, surfaces => layers(j)%surfaces)
           p = batch%first(lane) + j
           u(:, p) = layer%u(lane, :)
           v(:, p) = layer%rates(lane, :)
@@ -320,8 +321,8 @@ contains
           history(p)%sticking = past%sticking(lane, :)
           cohesive%points(p) = cohesive_point_t(surfaces%damage(lane), surfaces%dissipated(lane), &
             sliding_t(surfaces%slip(lane, :), surfaces%limit(lane)/batch%layers(j)%area(lane), surfaces%heat(lane)))
-        end do
-      end associate
+        end associate
+      end do
     end do
   end subroutine store_layers
 end module stack_batches

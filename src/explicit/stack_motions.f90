@@ -168,6 +168,7 @@ contains
     do j = 1, batch%n
       call relate(1.0_wp, batch%layers(j)%height, layers(j - 1)%velocity, layers(j)%rates, layers(j)%velocity)
     end do
+    if (.not. batch%constrained) return
     do j = 0, batch%n
       layers(j)%start = layers(j)%velocity
     end do

@@ -71,10 +71,9 @@ contains
     real(wp) :: along_xi(lanes, 3, 3)
     integer :: j
 
-    along_xi = 0.0_wp
     do j = 1, 3
-      call add_line_values(values(:, j, 1), values(:, j, 2), values(:, j, 3), &
-                           along_xi(:, j, 1), along_xi(:, j, 2), along_xi(:, j, 3))
+      call spread_values(values(:, j, 1), values(:, j, 2), values(:, j, 3), &
+                         along_xi(:, j, 1), along_xi(:, j, 2), along_xi(:, j, 3))
     end do
     do j = 1, 3
       call add_line_values(along_xi(:, 1, j), along_xi(:, 2, j), along_xi(:, 3, j), f(:, 1, j), f(:, 2, j), f(:, 3, j))
@@ -111,13 +110,11 @@ contains
     real(wp) :: values(lanes, 3, 3), slopes(lanes, 3, 3)
     integer :: j
 
-    values = 0.0_wp
-    slopes = 0.0_wp
     do j = 1, 3
-      call add_line_values(gradient(:, j, 1, 1), gradient(:, j, 2, 1), gradient(:, j, 3, 1), &
-                           slopes(:, j, 1), slopes(:, j, 2), slopes(:, j, 3))
-      call add_line_slopes(gradient(:, j, 1, 2), gradient(:, j, 2, 2), gradient(:, j, 3, 2), &
-                           values(:, j, 1), values(:, j, 2), values(:, j, 3))
+      call spread_values(gradient(:, j, 1, 1), gradient(:, j, 2, 1), gradient(:, j, 3, 1), &
+                         slopes(:, j, 1), slopes(:, j, 2), slopes(:, j, 3))
+      call spread_slopes(gradient(:, j, 1, 2), gradient(:, j, 2, 2), gradient(:, j, 3, 2), &
+                         values(:, j, 1), values(:, j, 2), values(:, j, 3))
     end do
     do j = 1, 3
       call add_line_values(values(:, 1, j), values(:, 2, j), values(:, 3, j), f(:, 1, j), f(:, 2, j), f(:, 3, j))
@@ -144,21 +141,35 @@ contains
   end subroutine line_values
 
   !> Transpose of `line_values`.
-  pure subroutine add_line_values(v1, v2, v3, f1, f2, f3)
+  pure subroutine spread_values(v1, v2, v3, f1, f2, f3)
     !> Loads at the Gauss points
     real(wp), intent(in) :: v1(lanes), v2(lanes), v3(lanes)
     !> Nodal forces
-    real(wp), intent(inout) :: f1(lanes), f2(lanes), f3(lanes)
+    real(wp), intent(out) :: f1(lanes), f2(lanes), f3(lanes)
     real(wp) :: total, half
     integer :: lane
 
     do lane = 1, lanes
       total = v1(lane) + v3(lane)
       half = 0.5_wp*gauss3*(v3(lane) - v1(lane))
-      f1(lane) = f1(lane) + (0.3_wp*total - half)
-      f2(lane) = f2(lane) + (0.4_wp*total + v2(lane))
-      f3(lane) = f3(lane) + (0.3_wp*total + half)
+      f1(lane) = 0.3_wp*total - half
+      f2(lane) = 0.4_wp*total + v2(lane)
+      f3(lane) = 0.3_wp*total + half
     end do
+  end subroutine spread_values
+
+  !> The same, added to the nodal forces.
+  pure subroutine add_line_values(v1, v2, v3, f1, f2, f3)
+    !> Loads at the Gauss points
+    real(wp), intent(in) :: v1(lanes), v2(lanes), v3(lanes)
+    !> Nodal forces
+    real(wp), intent(inout) :: f1(lanes), f2(lanes), f3(lanes)
+    real(wp), dimension(lanes) :: g1, g2, g3
+
+    call spread_values(v1, v2, v3, g1, g2, g3)
+    f1 = f1 + g1
+    f2 = f2 + g2
+    f3 = f3 + g3
   end subroutine add_line_values
 
   !> Slopes of a parabola at the three Gauss points of a line.
@@ -180,20 +191,34 @@ contains
   end subroutine line_slopes
 
   !> Transpose of `line_slopes`.
-  pure subroutine add_line_slopes(s1, s2, s3, f1, f2, f3)
+  pure subroutine spread_slopes(s1, s2, s3, f1, f2, f3)
     !> Stresses at the Gauss points
     real(wp), intent(in) :: s1(lanes), s2(lanes), s3(lanes)
     !> Nodal forces
-    real(wp), intent(inout) :: f1(lanes), f2(lanes), f3(lanes)
+    real(wp), intent(out) :: f1(lanes), f2(lanes), f3(lanes)
     real(wp) :: half, change
     integer :: lane
 
     do lane = 1, lanes
       half = 0.5_wp*(s1(lane) + s2(lane) + s3(lane))
       change = gauss3*(s3(lane) - s1(lane))
-      f1(lane) = f1(lane) + (change - half)
-      f2(lane) = f2(lane) - 2.0_wp*change
-      f3(lane) = f3(lane) + (change + half)
+      f1(lane) = change - half
+      f2(lane) = -2.0_wp*change
+      f3(lane) = change + half
     end do
+  end subroutine spread_slopes
+
+  !> The same, added to the nodal forces.
+  pure subroutine add_line_slopes(s1, s2, s3, f1, f2, f3)
+    !> Stresses at the Gauss points
+    real(wp), intent(in) :: s1(lanes), s2(lanes), s3(lanes)
+    !> Nodal forces
+    real(wp), intent(inout) :: f1(lanes), f2(lanes), f3(lanes)
+    real(wp), dimension(lanes) :: g1, g2, g3
+
+    call spread_slopes(s1, s2, s3, g1, g2, g3)
+    f1 = f1 + g1
+    f2 = f2 + g2
+    f3 = f3 + g3
   end subroutine add_line_slopes
 end module reference_fields

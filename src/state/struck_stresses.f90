@@ -16,18 +16,16 @@ module struck_stresses
 contains
 
   !> Magnitude of the surface stress 6 M / h**2 around the struck point, the same on every rank.
-  real(wp) function struck_stress(plate, displacement) result(stress)
+  real(wp) function struck_stress(plate, motion) result(stress)
     type(composite_plate_t), intent(in) :: plate
-    !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    !> Motion of the layers, ghosts up to date, (5, points)
+    real(wp), contiguous, intent(in) :: motion(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
     type(exact_sum_t) :: sums(3)
     type(section_t) :: section
     real(wp) :: thickness
-    real(wp), allocatable :: motion(:, :)
     integer :: i, k
 
-    if (size(plate%struck%elements) > 0) motion = plate%motion_of(displacement)
     do i = 1, size(plate%struck%elements)
       associate (element => plate%struck%elements(i))
         call mean_strains(plate%elements, batch_of(element), plate%setup%mesh%kinematics, motion, strains)

@@ -84,7 +84,7 @@ contains
     call record_energies(method, model, now)
     now%interfaces%rig%found = method%rigs%reactions_of(model, method%force, now%motion%displacement)
     if (size(model%loads%lines) > 0) now%line_reactions = method%lines%totals(model)
-    now%impact%stress = struck_stress(model%plate, now%motion%displacement)
+    now%impact%stress = struck_stress(model%plate, method%motion)
     now%impact%largest_stress = max(now%impact%largest_stress, now%impact%stress)
     call check_stability(model%plate, now, error)
   end subroutine complete_step

@@ -30,7 +30,7 @@ contains
       call self%trial%record_path(self%now, model%plate%setup%loading%dissipation)
     change = 0
     associate (now => self%now%impact, trial => self%trial%impact)
-      trial%stress = struck_stress(model%plate, self%trial%motion%displacement)
+      trial%stress = struck_stress(model%plate, model%plate%motion_of(self%trial%motion%displacement))
       trial%largest_stress = max(now%largest_stress, trial%stress)
       if (trial%largest_stress > 0) change = abs(trial%stress - now%stress)/trial%largest_stress
     end associate
