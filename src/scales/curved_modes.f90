@@ -35,7 +35,7 @@ contains
   end function is_flat
 
   !> Membrane stiffness of a mode per area, and the inertia of its in-plane displacements over that of its deflection.
-  pure function membrane_mode(shape, extension, waves, lengths) result(mode)
+  pure function membrane_mode(shape, extension, waves, lengths, symmetric) result(mode)
     type(shallow_shape_t), intent(in) :: shape
     !> A11, A12, A16, A22, A26, A66
     real(wp), intent(in) :: extension(6)
@@ -43,13 +43,15 @@ contains
     real(wp), intent(in) :: waves(2)
     !> Lengths over which the waves extend
     real(wp), intent(in) :: lengths(2)
+    !> True: the mode is symmetric about the middle of its lines, which therefore have a mean strain
+    logical, intent(in) :: symmetric(2)
     !> Stiffness; inertia, as if edges were free across
     real(wp) :: mode(2)
 
     mode = 0
     if (shape%is_flat()) return
     mode = with_free_edges(shape%curvature, extension, waves)
-    mode(1) = max(mode(1), with_held_edges(shape, extension, waves*lengths/pi))
+    mode(1) = max(mode(1), with_held_edges(shape, extension, waves*lengths/pi, symmetric))
     mode(2) = shape%scaling*mode(2)
   end function membrane_mode
 
@@ -78,16 +80,18 @@ contains
 
   !> Stiffness by the mean strains of lines that are held at both ends: the square of the mean of an odd number n of
   !> half waves over its mean square is 8/(pi n)**2; that of an even number is zero.
-  pure real(wp) function with_held_edges(shape, a, number) result(stiffness)
+  pure real(wp) function with_held_edges(shape, a, number, symmetric) result(stiffness)
     type(shallow_shape_t), intent(in) :: shape
     !> Membrane stiffness A11, A12, A16, A22, A26, A66
     real(wp), intent(in) :: a(6)
     !> Number of half waves along x and y
     real(wp), intent(in) :: number(2)
+    !> As in `membrane_mode`
+    logical, intent(in) :: symmetric(2)
     real(wp) :: mean(2)
 
     mean = 0
-    where (shape%is_held) mean = shape%curvature*sqrt(8.0_wp)/(pi*max(1.0_wp, number))
+    where (shape%is_held .and. symmetric) mean = shape%curvature*sqrt(8.0_wp)/(pi*max(1.0_wp, number))
     stiffness = a(1)*mean(1)**2 + 2*a(2)*product(mean) + a(4)*mean(2)**2
     ! Without a force across, the lines contract.
     if (.not. shape%is_held(1)) stiffness = stiffness - (a(2)*mean(2))**2/a(1)

@@ -1,21 +1,22 @@
-!> A plate struck at its centre, represented by its modes, for estimates before a run.
+!> A struck plate, represented by its modes, for estimates before a run.
 !>
 !> The modes are Navier's modes of a simply supported orthotropic Mindlin plate with rotary inertia, with the rotations
-!> condensed out. Other supports are approximated: between clamped edges modes are those of clamped beams (Rayleigh's
-!> method), a plate clamped at one edge is replaced by a shorter one with the same first frequency, and free opposite
-!> edges have cosines, with the rigid-body motion. A curved plate has the additional stiffness of its membrane forces.
+!> condensed out. Other supports are approximated: between clamped edges, and between a clamped and a simply supported
+!> one, modes are those of beams (Rayleigh's method), a plate held at one edge only is replaced by a longer or shorter
+!> one with the same first frequency, and free opposite edges have cosines, with the rigid-body motion. A curved plate
+!> has the additional stiffness of its membrane forces.
 module modal_plates
-  use beam_modes, only: clamped_beam_mean, clamped_beam_number, clamped_beam_slope, propped_beam_number, &
-                        propped_beam_slope
+  use beam_modes, only: clamped_beam_mean, clamped_beam_number, clamped_beam_slope
   use curved_modes, only: membrane_mode, shallow_shape_t
   use kinds, only: wp
   use mathematical_constants, only: pi
   use mesh_parameters, only: edge_free, edge_simple, edge_clamped
+  use roundings, only: rounding
   implicit none
   private
   public :: modal_plate_t, modal_plate_of, reduced
 
-  !> Modes that a force distributed over a patch in the middle excites.
+  !> Modes that a force distributed over a patch excites.
   type :: modal_plate_t
     !> Circular frequency of each mode
     real(wp), allocatable :: frequency(:)
@@ -41,7 +42,7 @@ module modal_plates
 contains
 
   !> Modes of a plate up to a frequency, and the static compliance of all higher modes.
-  pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff, shape) result(plate)
+  pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff, shape, place) result(plate)
     real(wp), intent(in) :: length(2)
     !> Supports at x-min, x-max, y-min, y-max
     integer, intent(in) :: edges(4)
@@ -55,14 +56,18 @@ contains
     real(wp), intent(in) :: cutoff
     !> Shape without stress; flat if absent
     type(shallow_shape_t), intent(in), optional :: shape
+    !> Coordinates of the middle of the square from that of the plate; in the middle if absent
+    real(wp), intent(in), optional :: place(2)
     type(modal_plate_t) :: plate
     real(wp), allocatable :: x(:, :), y(:, :)
     real(wp), allocatable :: frequency(:), weight(:), wave_number(:, :)
-    real(wp) :: condensed(2), extent(2), this
+    real(wp) :: condensed(2), extent(2), at(2), this
     integer :: i, j, found
 
-    x = modes_along(length(1), edges(1:2), patch)
-    y = modes_along(length(2), edges(3:4), patch)
+    at = 0
+    if (present(place)) at = max(-0.5_wp, min(0.5_wp, place/length))
+    x = modes_along(length(1), edges(1:2), patch, at(1))
+    y = modes_along(length(2), edges(3:4), patch, at(2))
     allocate (frequency(size(x, 2)*size(y, 2)), weight(size(x, 2)*size(y, 2)), wave_number(2, size(x, 2)*size(y, 2)))
     extent = length*[length_factor(edges(1:2)), length_factor(edges(3:4))]
     found = 0
@@ -70,7 +75,8 @@ contains
       do i = 1, size(x, 2)
         condensed = condensed_mode(x(1, i), y(1, j), x(3, i)*y(3, j), stiffness, mass)
         if (present(shape)) condensed = condensed + &
-          [1.0_wp, mass(1)]*membrane_mode(shape, stiffness(1:6), [x(1, i), y(1, j)], extent)
+          [1.0_wp, mass(1)]*membrane_mode(shape, stiffness(1:6), [x(1, i), y(1, j)], extent, &
+                                           [x(4, i), y(4, j)] > 0)
         this = x(2, i)*y(2, j)/condensed(2)
         if (condensed(1) > cutoff**2*condensed(2)) then
           plate%rest = plate%rest + this*condensed(2)/condensed(1)
@@ -87,41 +93,67 @@ contains
     plate%wave_number = wave_number(:, :found)
   end function modal_plate_of
 
-  !> Wave numbers along one direction, the squares of the modes' means over the patch over their norms, and the mean
-  !> square of their slopes over the square of the wave number, (3, modes).
-  pure function modes_along(length, edges, patch) result(modes)
+  !> Wave numbers along one direction, the squares of the modes' means over the patch over their norms, the mean square
+  !> of their slopes over the square of the wave number, and 1 for those that are symmetric about the middle. A force in
+  !> the middle excites these only. A plate that is held at one end is replaced by a longer or shorter one struck in its
+  !> middle.
+  pure function modes_along(length, edges, patch, place) result(modes)
     !> Length of the plate
     real(wp), intent(in) :: length
     !> Supports at both ends
     integer, intent(in) :: edges(2)
     !> Side of the loaded square
     real(wp), intent(in) :: patch
-    !> Wave number; square of the mean over the norm, 1/length; of the slopes
+    !> Coordinate of its middle from that of the plate, over the length
+    real(wp), intent(in) :: place
+    !> Wave number; square of the mean over the norm, 1/length; of the slopes; symmetry, (4, modes)
     real(wp), allocatable :: modes(:, :)
-    real(wp) :: extent, half
-    logical :: free
-    integer :: i, number
+    integer, allocatable :: number(:)
+    real(wp) :: extent
+    integer :: i, most
 
-    free = all(edges == edge_free)
     extent = length*length_factor(edges)
-    number = min(max_modes, 4 + int(extent/(2*part_of_patch*patch)))
-    allocate (modes(3, number), source=1.0_wp)
+    most = min(max_modes, 4 + int(extent/(2*part_of_patch*patch)))
+    number = [(2*i - 1, i=1, most)]
+    if (is_propped(edges) .or. edges(1) == edges(2) .and. abs(place) > rounding) &
+      number = [(i, i=1, min(max_modes, 2*most))]
+    allocate (modes(4, size(number)), source=1.0_wp)
+    modes(4, :) = modulo(number, 2)
     if (all(edges == edge_clamped)) then
-      associate (q => clamped_beam_number([(i, i=1, number)]))
-        modes(1, :) = q/length
-        modes(2, :) = clamped_beam_mean(q, min(1.0_wp, patch/length))**2/length
-        modes(3, :) = clamped_beam_slope(q)
-      end associate
+      modes(1, :) = clamped_beam_number(number)/length
+      modes(2, :) = clamped_beam_mean(number, min(1.0_wp, patch/length), place)**2/length
+      modes(3, :) = clamped_beam_slope(number)
+      return
+    else if (is_propped(edges)) then
+      ! Half of a clamped beam of twice the length, from its middle on.
+      modes(1, :) = clamped_beam_number(2*number)/(2*length)
+      modes(2, :) = clamped_beam_mean(2*number, min(1.0_wp, patch/length)/2, &
+                                      (0.5_wp + merge(place, -place, edges(1) == edge_simple))/2)**2/length
+      modes(3, :) = clamped_beam_slope(2*number)
+      modes(4, :) = 1
       return
     end if
-    do i = 1, number
-      modes(1, i) = (2*i - merge(2, 1, free))*pi/extent
-      half = modes(1, i)*patch/2
-      modes(2, i) = merge(1, 2, modes(1, i) <= 0)/extent
-      if (half > 0) modes(2, i) = modes(2, i)*(sin(half)/half)**2
-    end do
-    if (is_propped(edges)) modes(3, :) = propped_beam_slope(modes(1, :)*length)
+    if (all(edges == edge_free)) number = number - 1
+    modes(1, :) = number*pi/extent
+    modes(2, :) = 2*mean_of_wave(number, all(edges == edge_free), patch/extent, place)**2/extent
+    where (number == 0) modes(2, :) = modes(2, :)/2
   end function modes_along
+
+  !> Mean of a sine or cosine over a part of the length.
+  elemental real(wp) function mean_of_wave(number, cosine, part, place) result(mean)
+    !> Number of half waves
+    integer, intent(in) :: number
+    !> True: its extremes, not its zeros, are at both ends
+    logical, intent(in) :: cosine
+    !> Length of the part, and coordinate of its middle from that of the wave, over the length
+    real(wp), intent(in) :: part, place
+    real(wp) :: half
+
+    half = number*pi*part/2
+    mean = sin(number*pi*(place + 0.5_wp))
+    if (cosine) mean = cos(number*pi*(place + 0.5_wp))
+    if (half > 0) mean = mean*sin(half)/half
+  end function mean_of_wave
 
   !> Whether one end is clamped and the other simply supported.
   pure logical function is_propped(edges)
@@ -140,7 +172,7 @@ contains
     if (all(edges == edge_clamped)) then
       factor = pi/clamped_beam_number(1)
     else if (is_propped(edges)) then
-      factor = pi/propped_beam_number
+      factor = 2*pi/clamped_beam_number(2)
     else if (any(edges == edge_clamped) .and. any(edges == edge_free)) then
       factor = lengthened_cantilever
     else if (any(edges == edge_simple) .and. any(edges == edge_free)) then

@@ -71,7 +71,7 @@ contains
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
     scales%plate_mass = section%mass(1)*product(setup%plate%length)
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
-                           loaded_side(setup), all_modes, shape_of(setup))
+                           loaded_side(setup), all_modes, shape_of(setup), setup%mesh%struck)
     bent = first_frequency(plate)
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     if (is_stiffened(setup) .and. section%mass(1) > 0) scales%first_period = stiffened_period(setup)
@@ -184,7 +184,7 @@ contains
     if (present(scaling)) section%mass(3) = scaling*section%mass(3)
     if (present(scaling)) shape%scaling = scaling
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, section%mass, &
-                           loaded_side(setup), cutoff, shape)
+                           loaded_side(setup), cutoff, shape, setup%mesh%struck)
   end function plate_modes
 
   !> Curvature of the plate, and the lines that its edges hold at both ends. Frames hold no in-plane displacement.
