@@ -1,6 +1,7 @@
 """Runs the commands of the tutorial, page by page, like a reader: the lines of blocks marked `sh`, in one folder with
-the decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
-Usage: tutorial.py IMPLAM ROOT FOLDER [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
+the decks. Each command ends with code 0, and each picture of a page is drawn by one of them. Decks with a
+delamination end early, unless --whole is given, since figures are not compared.
+Usage: tutorial.py IMPLAM ROOT FOLDER [--whole] [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
 
 Ends with code 77 where the Python commands are not installed."""
 
@@ -15,6 +16,8 @@ from pathlib import Path
 from page_commands import Command, parts_of
 
 SKIPPED = 77
+# End of decks with a delamination [s], after its first growth.
+EARLY = "1.5e-3"
 PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)")
 
 
@@ -23,10 +26,18 @@ def commands_of(page):
     return [part.text for part in parts_of(page) if isinstance(part, Command) and part.kind == "run"]
 
 
+def shorten(folder):
+    """Let the decks of a folder that have a delamination end early."""
+    for path in folder.glob("*.nml"):
+        deck = path.read_text(encoding="utf-8")
+        if "&delamination" in deck:
+            path.write_text(re.sub(r"(?<=\bend=)\S+", EARLY, deck), encoding="utf-8")
+
+
 def main(arguments):
     """Run all pages; return the exit code."""
-    keep = "--keep" in arguments
-    implam, root, folder = (Path(word).resolve() for word in arguments if word != "--keep")
+    keep, whole = "--keep" in arguments, "--whole" in arguments
+    implam, root, folder = (Path(word).resolve() for word in arguments if not word.startswith("--"))
     scripts = root / ".venv" / "bin"
     if not (scripts / "implam-plot").exists():
         print("skipped: the Python commands are not installed")
@@ -35,6 +46,8 @@ def main(arguments):
     folder.mkdir(parents=True)
     for name in ("tutorial", "small"):
         shutil.copytree(root / "input" / name, folder / "input" / name)
+    if not (keep or whole):
+        shorten(folder / "input" / "tutorial")
     environment = os.environ | {"PATH": f"{implam.parent}:{scripts}:{os.environ['PATH']}"}
     wrong, drawn = [], []
     for path in sorted((root / "doc" / "tutorial").glob("*.md")):

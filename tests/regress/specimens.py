@@ -190,7 +190,7 @@ def trial(kind, implam, folder, option=""):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     if kind == "moment_unequal":
-        check_unequal(implam, folder, int(option or 120))
+        check_unequal(implam, folder, int(option or 60))
         return
     if kind == "buckled":
         check_buckled(implam, folder, float(option or 500))
