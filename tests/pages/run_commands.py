@@ -23,7 +23,7 @@ SKIPPED = 77
 # Folders of the pages.
 PAGES = (".", "doc", "doc/manual", "doc/studies", "doc/theory")
 # Seconds after which a long command is stopped, enough to read a deck and do some steps; then for its orderly end.
-STARTED, ENDED = 5, 120
+STARTED, ENDED = 3, 120
 STOPPED = (0, 75, -signal.SIGTERM)
 # Kinds of commands that are tested here.
 TRIED = ("run", "start")

@@ -1,8 +1,8 @@
 """Laminated beams and the plate of all plies: doublers whose bond may delaminate.
 Usage: bonds.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
-plates   a doubler over the full plate, also with a stringer on it, equals the plate of all plies with the interface
-         between them
+plates   a doubler over the full plate, on either face, also with a stringer on it, equals the plate of all plies with
+         the interface between them
 stiff    a strong bond tends to the rigid one
 strips   single-leg bending, and a skin with a bonded flange in three-point bending: energy release rate and load at
          growth
@@ -26,12 +26,13 @@ LAW = "law='cohesive' G_Ic=0.03 G_IIc=0.08"
 INTERFACES = ("&delamination below_ply={plies} zone=60,40 " + LAW + " /",
               "{others}&delamination doubler='all' " + LAW + " /")
 PLIES_FAIL = "&ply_damage criteria='hashin' /\n"
-# Time, speed, further groups, interfaces of the laminate, and end of the comparison. Open surfaces that touch amplify
-# round-off later.
-PLATES = {"implicit": ("step=2e-6", 4000, PLIES_FAIL, (), 2.1e-4),
-          "explicit": (EXPLICIT, 4000, PLIES_FAIL, (), 2.1e-4),
-          "interfaces": (EXPLICIT, 7000, "", (1, 2), 1.35e-4),
-          "stiffened": (EXPLICIT, 7000, STRINGER + "\n", (), 1.35e-4)}
+# Time, speed, further groups, faces of the doubler, interfaces of the laminate, and end. Open surfaces that touch
+# amplify round-off later.
+FACES = {"back": (HALF, OTHER_HALF, 3), "front": (OTHER_HALF, HALF, 0)}
+PLATES = {"implicit": ("step=2e-6", 4000, PLIES_FAIL, ("back",), (), 2e-4),
+          "explicit": (EXPLICIT, 4000, PLIES_FAIL, ("front",), (), 2e-4),
+          "interfaces": (EXPLICIT, 7000, "", ("back", "front"), (1, 2), 1.35e-4),
+          "stiffened": (EXPLICIT, 7000, STRINGER + "\n", ("front",), (), 1.35e-4)}
 SAME = 1e-9  # measured: 1e-11
 COLUMNS = ("force", "deflection", "impactor_velocity", "energy_strain", "delaminated_area", "energy_delamination",
            "projected_area", "area_below_3", "energy_error")
@@ -137,18 +138,19 @@ def plate(folder, implam, trial, laminate, groups):
     """Return the path of the history of a plate."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "deck.nml"
-    path.write_text(PLATE.format(laminate=laminate, doubler="", time=trial[0], speed=trial[1],
-                                 damage=trial[2] + groups), encoding="utf-8")
+    text = PLATE.format(laminate=laminate, doubler="", time=trial[0], speed=trial[1], damage=trial[2] + groups)
+    path.write_text(text.replace("end=2e-4", f"end={trial[-1]}"), encoding="utf-8")
     return run_deck(implam, path)
 
 
 def try_plates(implam, folder):
     """Compare plates with a doubler bonded over their full area, on either face, with the plate of all plies."""
     for name, trial in PLATES.items():
-        others, end = trial[3:]
-        for face, laminate, doubler, below in (("back", HALF, OTHER_HALF, 3), ("front", OTHER_HALF, HALF, 0)):
+        faces, others, _ = trial[3:]
+        for face in faces:
+            laminate, doubler, below = FACES[face]
             place = f"{name} {face}"
-            changed = (*trial[:2], trial[2].replace("&stringer", f"&stringer face='{face}'"))
+            changed = (*trial[:2], trial[2].replace("&stringer", f"&stringer face='{face}'"), *trial[3:])
             plies = [3, *(ply + (0 if below else 3) for ply in others)]
             expected = read_history(plate(folder / place / "all", implam, changed, ALL, INTERFACES[0].format(
                 plies=", ".join(map(str, sorted(plies))))))
@@ -159,13 +161,10 @@ def try_plates(implam, folder):
             for column in COLUMNS:
                 largest = max(map(abs, expected["energy_impactor" if column == "energy_error" else column]))
                 there = found[f"area_below_{below}" if column == "area_below_3" else column]
-                difference = max(abs(one - other) for time, one, other in
-                                 zip(expected["time"], expected[column], there, strict=True) if time < end)
+                difference = max(abs(one - other) for one, other in zip(expected[column], there, strict=True))
                 print(f"{place}, {column}: {difference / (largest or 1):.1e} of {largest:.4g}")
                 require(difference <= SAME * largest, f"{place}: {column} differs.")
-            times, areas = expected["time"], expected["area_below_3"]
-            require(max(area for time, area in zip(times, areas, strict=True) if time < end) > 0,
-                    f"{place}: the bond does not fail.")
+            require(max(expected["area_below_3"]) > 0, f"{place}: the bond does not fail.")
 
 
 def try_stiff(implam, folder):

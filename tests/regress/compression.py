@@ -611,8 +611,9 @@ def check_coupon(implam, folder, _):
 
 def main(trial, implam, folder, launcher):
     """Run one trial."""
-    trials = {"impact": check_impact, "chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
+    trials = {"impact": check_impact, "chain": check_chain, "again": check_again, "ranks": check_ranks,
+              "whole": check_whole, "buckling": check_buckling, "bent": check_bent, "closing": check_closing,
+              "moduli": check_moduli,
               "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped,
               "mapped_ranks": check_mapped_ranks, "until": check_until, "aside": check_aside, "cut": check_cut,
               "cut_ranks": check_cut}

@@ -147,9 +147,9 @@ def check_all_checkpoints(implam, folder, source, settings, grows="delaminated_a
         require(damage_of(history_of(copy)) == damage_of(reference), f"Other cells delaminated after step {step}.")
     run([implam, *words])
     require_same(history_of(deck.parent), reference, "a run for each step")
-    require(damage_of(history_of(deck.parent)) == damage_of(reference), "Other cells delaminated in a run for each step.")
+    require(damage_of(history_of(deck.parent)) == damage_of(reference), "Other cells delaminated, a run for each step.")
     require(steps > 2 * CONTINUED, f"A run of {steps} steps is hardly continued: the trial is void.")
-    print(f"Restarted after each of {steps - 1} steps, and continued after every {CONTINUED}th: the same to the last bit")
+    print(f"Restarted after each of {steps - 1} steps, continued after every {CONTINUED}th: the same to the last bit")
 
 
 def check_splits(implam, folder, _):
