@@ -69,14 +69,16 @@ class Checker:
     def __init__(self, program, root, build):
         """Set the program and folders."""
         self.program, self.root, self.build = program, root, build
-        self.helps, self.numbers = {}, {}
+        self.helps, self.numbers, self.ended = {}, {}, {}
 
     def run(self, *words):
-        """Exit code and output of a program."""
-        with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                  timeout=120, check=False)  # fmt: skip
-        return done.returncode, done.stdout
+        """Exit code and output of a program, which is run once only with the same words."""
+        if words not in self.ended:
+            with tempfile.TemporaryDirectory() as folder:
+                done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                      timeout=120, check=False)  # fmt: skip
+            self.ended[words] = done.returncode, done.stdout
+        return self.ended[words]
 
     def help_of(self, name):
         """The help of a Python command; empty where it is not installed."""
