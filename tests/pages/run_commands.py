@@ -17,7 +17,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from page_commands import Command, SavedFile, parts_of
+from page_commands import Command, SavedFile, parts_of, shorten
 
 SKIPPED = 77
 # Folders of the pages.
@@ -50,6 +50,7 @@ class Clone:
             if (root / name).exists():
                 (folder / name).symlink_to(root / name)
         shutil.copytree(root / "input", folder / "input")
+        shorten(folder / "input")
         (folder / "temporary").mkdir()
         path = f"{folder / 'build'}:{folder / '.venv' / 'bin'}:{os.environ['PATH']}"
         # Scripts that are stopped leave their temporary folders.

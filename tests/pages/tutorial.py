@@ -1,6 +1,6 @@
 """Runs the commands of the tutorial, page by page, like a reader: the lines of blocks marked `sh`, in one folder with
-the decks. Each command ends with code 0, and each picture of a page is drawn by one of them. Decks with a
-delamination end early, unless --whole is given, since figures are not compared.
+the decks. Each command ends with code 0, and each picture of a page is drawn by one of them. Decks with
+delaminations end early (page_commands.EARLY), unless --whole is given.
 Usage: tutorial.py IMPLAM ROOT FOLDER [--whole] [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
 
 Ends with code 77 where the Python commands are not installed."""
@@ -13,25 +13,15 @@ import sys
 import time
 from pathlib import Path
 
-from page_commands import Command, parts_of
+from page_commands import Command, parts_of, shorten
 
 SKIPPED = 77
-# End of decks with a delamination [s], after its first growth.
-EARLY = "1.5e-3"
 PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)")
 
 
 def commands_of(page):
     """The commands of a page that are run."""
     return [part.text for part in parts_of(page) if isinstance(part, Command) and part.kind == "run"]
-
-
-def shorten(folder):
-    """Let the decks of a folder that have a delamination end early."""
-    for path in folder.glob("*.nml"):
-        deck = path.read_text(encoding="utf-8")
-        if "&delamination" in deck:
-            path.write_text(re.sub(r"(?<=\bend=)\S+", EARLY, deck), encoding="utf-8")
 
 
 def main(arguments):
@@ -47,7 +37,7 @@ def main(arguments):
     for name in ("tutorial", "small"):
         shutil.copytree(root / "input" / name, folder / "input" / name)
     if not (keep or whole):
-        shorten(folder / "input" / "tutorial")
+        shorten(folder / "input")
     environment = os.environ | {"PATH": f"{implam.parent}:{scripts}:{os.environ['PATH']}"}
     wrong, drawn = [], []
     for path in sorted((root / "doc" / "tutorial").glob("*.md")):
