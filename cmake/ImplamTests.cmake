@@ -20,8 +20,8 @@ function(implam_settle_test test label)
   set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 600)
 endfunction()
 
-# implam_on_demand(<test>...): tests of half a minute and more beside quicker ones of the same kind. They have the label
-# slow, which the presets leave out: `ctest --test-dir build -L slow` runs them.
+# implam_on_demand(<test>...): longer tests beside quicker ones of the same kind. They have the label slow, which the
+# presets leave out: `ctest --test-dir build -L slow` runs them.
 function(implam_on_demand)
   set_property(TEST ${ARGN} APPEND PROPERTY LABELS slow)
 endfunction()

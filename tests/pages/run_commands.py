@@ -50,7 +50,6 @@ class Clone:
             if (root / name).exists():
                 (folder / name).symlink_to(root / name)
         shutil.copytree(root / "input", folder / "input")
-        shorten(folder / "input")
         (folder / "temporary").mkdir()
         path = f"{folder / 'build'}:{folder / '.venv' / 'bin'}:{os.environ['PATH']}"
         # Scripts that are stopped leave their temporary folders.
@@ -64,7 +63,8 @@ class Clone:
         path.write_text(file.text, encoding="utf-8")
 
     def run(self, command):
-        """Run a command; return its fault and its processor time."""
+        """Run a command, with decks that end early; return its fault and its processor time."""
+        shorten(self.folder)
         begun = processor_time()
         done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)  # fmt: skip
@@ -77,6 +77,7 @@ class Clone:
 
     def start(self, command):
         """Start a long command and stop it; return its fault and its processor time."""
+        shorten(self.folder)
         begun = processor_time()
         with subprocess.Popen(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

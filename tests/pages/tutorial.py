@@ -37,7 +37,7 @@ def main(arguments):
     for name in ("tutorial", "small"):
         shutil.copytree(root / "input" / name, folder / "input" / name)
     if not (keep or whole):
-        shorten(folder / "input")
+        shorten(folder)
     environment = os.environ | {"PATH": f"{implam.parent}:{scripts}:{os.environ['PATH']}"}
     wrong, drawn = [], []
     for path in sorted((root / "doc" / "tutorial").glob("*.md")):
