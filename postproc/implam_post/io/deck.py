@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from implam_post.io.errors import DeckError
-from implam_post.io.files import read_text
+from implam_post.io.files import read_deck_text, text_of
 from implam_post.io.namelist import Value, read_namelist
 from implam_post.io.units import SYSTEMS, system_of
 
@@ -110,7 +110,7 @@ def as_number(value: Value, where: str) -> float:
 
 def recorded_deck(provenance: Mapping[str, Any], path: Path) -> Deck:
     """Return the deck of a run from the provenance in its results, with the values of published materials."""
-    deck, adopted = (text if isinstance(text, str) else text[()].decode("utf-8")
+    deck, adopted = (text if isinstance(text, str) else text_of(text[()])
                      for text in (provenance["deck"], provenance.get("library", "")))
     return Deck(deck, path, adopted)
 
@@ -118,7 +118,7 @@ def recorded_deck(provenance: Mapping[str, Any], path: Path) -> Deck:
 def read_deck(path: Path | str) -> Deck:
     """Read the deck from its file."""
     path = Path(path)
-    return Deck(read_text(path, "the deck"), path)
+    return Deck(read_deck_text(path), path)
 
 
 def system_of_deck(deck: Deck | None) -> str:

@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -11,6 +12,8 @@ from implam_post.io.errors import FileError, reason
 
 if TYPE_CHECKING:
     import pandas as pd
+
+_NOT_IN_DECKS = re.compile(r"[\0-\b\v\f\x0e-\x1f\x7f]")
 
 
 @contextmanager
@@ -58,6 +61,26 @@ def read_text(path: Path, what: str) -> str:
         raise FileError(f"{what} {path} cannot be read ({reason(error)}).") from None
     except UnicodeDecodeError:
         raise FileError(f"{what} {path} cannot be read: it is not a text file.") from None
+
+
+def text_of(data: bytes) -> str:
+    """Return the text of a deck; one that is not UTF-8 is taken for Latin 1, as in the summary of its run."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def read_deck_text(path: Path) -> str:
+    """Return the text of a deck, in the characters that the program reads."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise FileError(f"the deck {path} cannot be read ({reason(error)}).") from None
+    text = text_of(data)
+    if _NOT_IN_DECKS.search(text):
+        raise FileError(f"the deck {path} cannot be read: it is not a text file.")
+    return text.replace("\r\n", "\n")
 
 
 def printable(name: str) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from implam_post.io.deck import read_deck
 from implam_post.io.deck_text import KeyPath, deck_value, key_path, set_keys
 from implam_post.io.errors import EXIT_DONE, DeckError, FileError, ImplamError, reason
-from implam_post.io.files import read_text, write_text
+from implam_post.io.files import read_deck_text, write_text
 from implam_post.io.program import environment, find_program, last_words, shell_code
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def run_deck(deck: Path | str, changes: Mapping[str | KeyPath, object] | None = 
     settings = {_key(name): "" if value is None else deck_value(_plain(value))
                 for name, value in (changes or {}).items()}
     written = folder / (deck_name or path.name)
-    text = set_keys(read_text(path, "the deck"), settings, path.name)
+    text = set_keys(read_deck_text(path), settings, path.name)
     if written.exists() and written.samefile(path):
         raise FileError(f"{folder} is the folder of the deck itself: give another one for the results.")
     write_text(written, text)

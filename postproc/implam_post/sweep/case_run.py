@@ -19,7 +19,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from implam_post.io.errors import EXIT_DONE, EXIT_FILES, CommandParser, FileError, run
-from implam_post.io.files import read_text, try_lock, write_text
+from implam_post.io.files import read_deck_text, read_text, try_lock, write_text
 from implam_post.io.program import (
     EXIT_CONVERGENCE,
     EXIT_STOPPED,
@@ -155,7 +155,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
         record = read_record(folder)
         if record is None and (folder / _RECORD).exists():
             drop_checkpoint(folder)  # the history of the run is missing: it has to begin at the start
-        record = record or Record(EXIT_STOPPED, inputs=inputs_of(read_text(deck, "the deck")))
+        record = record or Record(EXIT_STOPPED, inputs=inputs_of(read_deck_text(deck)))
         while not record.final and not stop:
             checkpoint = checkpoint_in(folder)
             record = _run_part(folder, deck if checkpoint is None else checkpoint, program, stop, lock, record)

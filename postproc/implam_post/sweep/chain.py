@@ -10,7 +10,7 @@ import numpy as np
 from implam_post.io.counts import counted
 from implam_post.io.deck_text import copy_groups, deck_value, key_path, set_keys
 from implam_post.io.errors import EXIT_DONE, DeckError, ImplamError
-from implam_post.io.files import read_text
+from implam_post.io.files import read_deck_text
 from implam_post.io.program import checkpoint_in
 from implam_post.sweep.case_run import read_record
 from implam_post.sweep.plan import Case
@@ -31,7 +31,7 @@ def following(sweep: Sweep) -> Sweep | None:
     plan = sweep.plan
     if plan.then is None:
         return None
-    text = read_text(plan.then, "the deck")
+    text = read_deck_text(plan.then)
     cases = [_second(case, checkpoint_in(sweep.folder(case)), plan.then, text)
              for case in plan.cases if _has_ended(sweep, case)]
     return Sweep(replace(plan, cases=cases, then=None, scatter=None, random=frozenset(), notes=()), sweep.program)
@@ -42,7 +42,7 @@ def foreseen(sweep: Sweep, then: Path, cases: Sequence[Case]) -> Sweep:
 
     Their checkpoints do not exist yet, so that the program does not check that the decks agree with them.
     """
-    text = read_text(then, "the deck")
+    text = read_deck_text(then)
     seconds = [_second(case, sweep.folder(case) / "pending_restart.h5", then, text) for case in cases]
     output = sweep.plan.output / "second_decks"
     return Sweep(replace(sweep.plan, output=output, cases=seconds, then=None), sweep.program)

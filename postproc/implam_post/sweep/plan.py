@@ -12,7 +12,7 @@ from pathlib import Path
 from implam_post.io.deck import Deck
 from implam_post.io.deck_text import KeyPath, deck_value, drop_group, group_path, key_path, number_of, set_keys
 from implam_post.io.errors import DeckError
-from implam_post.io.files import read_text
+from implam_post.io.files import read_deck_text, read_text
 from implam_post.io.units import SYSTEMS
 from implam_post.sweep.expressions import CONSTANTS, FUNCTIONS, evaluate
 from implam_post.sweep.library_values import Library, adopt, asking
@@ -327,7 +327,7 @@ class CaseMaker:
     def _text(self, base: str) -> str:
         """Return the text of a base deck."""
         if base not in self._texts:
-            self._texts[base] = read_text(self._folder / base, "the deck")
+            self._texts[base] = read_deck_text(self._folder / base)
         return self._texts[base]
 
     def _resolve(self, word: str, values: dict[str, object], text: str, name: str) -> object:

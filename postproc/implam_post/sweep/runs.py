@@ -10,7 +10,7 @@ from pathlib import Path
 
 from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, FileError, reason
-from implam_post.io.files import read_text, write_text
+from implam_post.io.files import read_deck_text, write_text
 from implam_post.io.program import EXIT_STOPPED, last_words, version_in, version_of
 from implam_post.io.progress import Progress
 from implam_post.sweep.case_run import OUTPUT, case_command, changed_input, read_record, remove_results
@@ -54,7 +54,7 @@ class Sweep:
         """Write the decks that do not exist yet."""
         for case in self.plan.cases:
             path = self.deck(case)
-            if not path.exists() or read_text(path, "the deck") != case.deck:
+            if not path.exists() or read_deck_text(path) != case.deck:
                 write_text(path, case.deck)
 
     def open_cases(self) -> list[Case]:

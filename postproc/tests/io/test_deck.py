@@ -49,6 +49,11 @@ class DeckTest(unittest.TestCase):
         material = plies_of(recorded_deck({"deck": text.replace("E1=2", "E1=2e11"), "library": whole}, Path("a.nml")))
         self.assertEqual((material[0].material.e1, material[0].material.g13), (2e11, 5e9))
 
+    def test_deck_in_latin_1(self) -> None:
+        """The deck in the results of a run may have letters in Latin 1."""
+        provenance = {"deck": {(): "&case title='Prüfung' /\n".encode("latin-1")}}
+        self.assertEqual(recorded_deck(provenance, Path("case.h5")).groups["case"][0]["title"], ["Prüfung"])
+
     def test_names_in_capitals(self) -> None:
         """Groups and keys may be written in any case, as in a deck."""
         self.assertTrue(deck(SUN_CHEN).has("Plate"))

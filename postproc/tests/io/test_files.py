@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 from implam_post.io.errors import FileError
-from implam_post.io.files import replaced, write_text
+from implam_post.io.files import read_deck_text, replaced, write_text
 
 PACKAGE = Path(__file__).parents[2] / "implam_post"
 
@@ -32,6 +32,17 @@ class FilesTest(unittest.TestCase):
         self.assertTrue(Path("/dev/null").is_char_device())
         with tempfile.TemporaryDirectory() as folder:
             self.assertRaises(FileError, write_text, Path(folder), "text")
+
+    def test_characters_of_decks(self) -> None:
+        """Decks in UTF-8 and in Latin 1 are read as the program reads them; bytes of no text are refused."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "deck.nml"
+            for data, text in ((b"! Pr\xfcfung\r\n", "! Prüfung\n"), ("\ufeff! Prüfung".encode(), "! Prüfung")):
+                path.write_bytes(data)
+                self.assertEqual(read_deck_text(path), text)
+            path.write_bytes(b"&case /\n\0")
+            with self.assertRaisesRegex(FileError, "it is not a text file"):
+                read_deck_text(path)
 
     def test_all_results_are_replaced(self) -> None:
         """No result is written under its own name, where a full disk would leave an empty file or a part of it."""
