@@ -243,7 +243,7 @@ contains
         ! 'between_angles' and 'all' find no interface in a laminate with errors.
         if (deck%setup%delaminations(i)%below_ply < 1 .and. problems%concern(laminate_group)) cycle
         if (interface_objection(deck%setup%delaminations(i), size(deck%setup%laminate%angle)) /= '') &
-          call report(deck%settings, problems, delamination_group, '', &
+          call report(deck%settings, problems, delamination_group, key_below_ply, &
                     interface_objection(deck%setup%delaminations(i), size(deck%setup%laminate%angle))//'.', place)
       end associate
     end do

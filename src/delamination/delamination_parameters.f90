@@ -1,6 +1,7 @@
 !> Parameters of the delamination of one interface in the deck.
 module delamination_parameters
   use kinds, only: wp
+  use text, only: to_text
   implicit none
   private
   public :: delamination_t, interface_objection, toughness_objection, default_starter, default_smoothing, toughnesses, &
@@ -154,13 +155,16 @@ contains
     type(delamination_t), intent(in) :: delamination
     !> Number of plies of the laminate
     integer, intent(in) :: plies
-    !> A clause of a message; empty: no objection
+    !> A clause of a message on below_ply; empty: no objection
     character(len=:), allocatable :: objection
 
     objection = ''
     if (delamination%bonds_doublers()) return
-    if (delamination%below_ply < 1 .or. delamination%below_ply >= plies) &
-      objection = 'below_ply must name a ply that has another one below it'
+    if (delamination%below_ply < 1) then
+      objection = 'there is none, as all plies have one angle and material; leave &delamination out, or list plies'
+    else if (delamination%below_ply >= plies) then
+      objection = 'below ply '//to_text(delamination%below_ply)//' of '//to_text(plies)//' there is no other ply'
+    end if
   end function interface_objection
 
   !> Objection to the combination of toughnesses; empty: none.

@@ -88,8 +88,8 @@ contains
 
     weaker = 0
     associate (plies => size(strengths, 2))
+      if (plies == 0) return
       if (interface%bonds_doublers()) then
-        if (plies == 0) return
         weaker = strengths(:, merge(1, plies, interface%is_on_front()))
         do i = 1, size(interface%beside)
           if (interface%beside(i) - plies <= size(of_doublers, 2)) &
@@ -97,7 +97,7 @@ contains
         end do
       else
         above = max(1, min(interface%below_ply, plies - 1))  ! one outside, which is refused: the nearest
-        if (above < plies) weaker = minval(strengths(:, above:above + 1), dim=2)
+        weaker = minval(strengths(:, above:min(above + 1, plies)), dim=2)
       end if
     end associate
   end function weaker_beside
