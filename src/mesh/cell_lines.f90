@@ -338,20 +338,15 @@ contains
     longest = maxval(sides(range(1):range(2)))
   end function longest_within
 
-  !> Mean side of the entire cells within a distance of the origin; if there are none, of those beside it.
+  !> Mean side of the cells within a distance of the origin, parts of cells included.
   pure real(wp) function mean_side(self, distance) result(side)
     class(cell_line_t), intent(in) :: self
     real(wp), intent(in) :: distance
-    integer :: first, last
+    real(wp) :: within(size(self%edges) - 1)
 
-    associate (edges => self%edges)
-      first = count(edges < -distance) + 1
-      last = count(edges <= distance)
-      if (last <= first) then
-        first = max(1, count(edges < 0))
-        last = min(size(edges), count(edges <= 0) + 1)
-      end if
-      side = (edges(last) - edges(first))/(last - first)
+    associate (n => size(self%edges))
+      within = max(0.0_wp, min(self%edges(2:), distance) - max(self%edges(:n - 1), -distance))
     end associate
+    side = sum(within)/sum(within/self%sides())
   end function mean_side
 end module cell_lines
