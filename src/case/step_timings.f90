@@ -43,6 +43,7 @@ contains
     call create_model(setup, alone, model, error)
     if (allocated(error)) return
     allocate (now, source=new_state(model))
+    ! The time does not depend on how much they are damaged.
     if (deck%expected%force > deck%expected%scales%threshold .and. allocated(now%interfaces%cohesive%points)) &
       now%interfaces%cohesive%points%damage = 0.5_wp
     call method%start(model, deck%stepping%central, now)

@@ -68,7 +68,7 @@ contains
     real(wp), intent(in) :: values(lanes, 3, 3)
     !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 3, 3)
-    real(wp) :: along_xi(lanes, 3, 3)
+    real(wp) :: along_xi(lanes, 3, 3), line(lanes, 3)
     integer :: j
 
     do j = 1, 3
@@ -76,7 +76,8 @@ contains
                          along_xi(:, j, 1), along_xi(:, j, 2), along_xi(:, j, 3))
     end do
     do j = 1, 3
-      call add_line_values(along_xi(:, 1, j), along_xi(:, 2, j), along_xi(:, 3, j), f(:, 1, j), f(:, 2, j), f(:, 3, j))
+      call spread_values(along_xi(:, 1, j), along_xi(:, 2, j), along_xi(:, 3, j), line(:, 1), line(:, 2), line(:, 3))
+      f(:, :, j) = f(:, :, j) + line
     end do
   end subroutine add_value_forces
 
@@ -107,7 +108,7 @@ contains
     real(wp), intent(in) :: gradient(lanes, 3, 3, 2)
     !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 3, 3)
-    real(wp) :: values(lanes, 3, 3), slopes(lanes, 3, 3)
+    real(wp) :: values(lanes, 3, 3), slopes(lanes, 3, 3), line(lanes, 3)
     integer :: j
 
     do j = 1, 3
@@ -117,8 +118,10 @@ contains
                          values(:, j, 1), values(:, j, 2), values(:, j, 3))
     end do
     do j = 1, 3
-      call add_line_values(values(:, 1, j), values(:, 2, j), values(:, 3, j), f(:, 1, j), f(:, 2, j), f(:, 3, j))
-      call add_line_slopes(slopes(:, 1, j), slopes(:, 2, j), slopes(:, 3, j), f(:, 1, j), f(:, 2, j), f(:, 3, j))
+      call spread_values(values(:, 1, j), values(:, 2, j), values(:, 3, j), line(:, 1), line(:, 2), line(:, 3))
+      f(:, :, j) = f(:, :, j) + line
+      call spread_slopes(slopes(:, 1, j), slopes(:, 2, j), slopes(:, 3, j), line(:, 1), line(:, 2), line(:, 3))
+      f(:, :, j) = f(:, :, j) + line
     end do
   end subroutine add_gradient_forces
 
@@ -158,20 +161,6 @@ contains
     end do
   end subroutine spread_values
 
-  !> The same, added to the nodal forces.
-  pure subroutine add_line_values(v1, v2, v3, f1, f2, f3)
-    !> Loads at the Gauss points
-    real(wp), intent(in) :: v1(lanes), v2(lanes), v3(lanes)
-    !> Nodal forces
-    real(wp), intent(inout) :: f1(lanes), f2(lanes), f3(lanes)
-    real(wp), dimension(lanes) :: g1, g2, g3
-
-    call spread_values(v1, v2, v3, g1, g2, g3)
-    f1 = f1 + g1
-    f2 = f2 + g2
-    f3 = f3 + g3
-  end subroutine add_line_values
-
   !> Slopes of a parabola at the three Gauss points of a line.
   pure subroutine line_slopes(r1, r2, r3, s1, s2, s3)
     !> Nodal values
@@ -207,18 +196,4 @@ contains
       f3(lane) = change + half
     end do
   end subroutine spread_slopes
-
-  !> The same, added to the nodal forces.
-  pure subroutine add_line_slopes(s1, s2, s3, f1, f2, f3)
-    !> Stresses at the Gauss points
-    real(wp), intent(in) :: s1(lanes), s2(lanes), s3(lanes)
-    !> Nodal forces
-    real(wp), intent(inout) :: f1(lanes), f2(lanes), f3(lanes)
-    real(wp), dimension(lanes) :: g1, g2, g3
-
-    call spread_slopes(s1, s2, s3, g1, g2, g3)
-    f1 = f1 + g1
-    f2 = f2 + g2
-    f3 = f3 + g3
-  end subroutine add_line_slopes
 end module reference_fields
