@@ -51,7 +51,7 @@ module material_deck
     'material | nu12 | real | 1 | - | none | > -10, < 10 | &
       &Major Poisson''s ratio; its magnitude is below sqrt(E1/E2).', &
     'material | nu23 | real | 1 | - | 0 | > -1, < 1 | &
-      &Transverse Poisson''s ratio; it has no effect on results, as plies are in plane stress.', &
+      &Transverse Poisson''s ratio, for face=''laminate'' of &indentation; elsewhere plies are in plane stress.', &
     'material | XT | real | 1 | pressure | none | > 0 | &
       &Tensile strength along the fibres. | | strength', &
     'material | XC | real | 1 | pressure | none | > 0 | &

@@ -9,7 +9,7 @@ module element_stresses
   use composite_plates, only: composite_plate_t
   implicit none
   private
-  public :: element_strains, has_ply, stress_of_ply, stresses_of_ply
+  public :: element_strains, stress_of_ply, stresses_of_ply
 
 contains
 
@@ -42,80 +42,57 @@ contains
     !> this ply, (5, 3, elements)
     real(wp), allocatable :: stresses(:, :, :)
     type(ply_t) :: strained
-    integer :: element
+    integer :: element, place
 
     allocate (stresses(5, 3, size(strains, 2)), source=0.0_wp)
     do element = 1, size(strains, 2)
-      if (.not. has_ply(plate, ply, element)) cycle
-      associate (shear => shear_of_ply(plate, strains, ply, element), &
-                 elasticity => failures%elasticity(plate, ply, element))
-        strained = strained_ply(plate, failures, ply, element)
-        stresses(:, 1, element) = middle_stress(strained, elasticity, strains(:6, element), shear)
-        stresses(:, 2:3, element) = face_stresses(strained, elasticity, strains(:6, element), shear)
-        stresses(1:2, :, element) = stresses(1:2, :, element) + spread(failures%carried_by_cracks(ply, element), 2, 3)
+      associate (stack => plate%layup%stacks(plate%layup%stack(element)))
+        place = stack%place(ply)
+        if (place == 0) cycle
+        associate (shear => stack%shear_stresses(strains(7:8, element)), &
+                   elasticity => failures%elasticity(plate, ply, element))
+          strained = strained_ply(plate, failures, place, element)
+          stresses(:, 1, element) = middle_stress(strained, elasticity, strains(:6, element), shear(:, place))
+          stresses(:, 2:3, element) = face_stresses(strained, elasticity, strains(:6, element), shear(:, place))
+          stresses(1:2, :, element) = stresses(1:2, :, element) + spread(failures%carried_by_cracks(ply, element), 2, 3)
+        end associate
       end associate
     end do
   end function stresses_of_ply
 
   !> Stress of one ply of one element in its own axes and its mid-plane: s11, s22, s12, s13, s23.
-  pure function stress_of_ply(plate, failures, elasticity, strains, ply, element) result(stress)
+  pure function stress_of_ply(plate, failures, elasticity, strains, shear, place, element) result(stress)
     type(composite_plate_t), intent(in) :: plate
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
     !> Reduced elastic constants of the ply
     type(elasticity_t), intent(in) :: elasticity
-    !> Result of element_strains
-    real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate, and element of this rank with this ply
-    integer, intent(in) :: ply, element
+    !> Of the element, from element_strains; transverse shear stresses of the ply, xz and yz
+    real(wp), intent(in) :: strains(:), shear(2)
+    !> Place of the ply in the element's stack, and element of this rank
+    integer, intent(in) :: place, element
     !> The stress
     real(wp) :: stress(5)
-    type(ply_t) :: strained
 
-    strained = strained_ply(plate, failures, ply, element)
-    stress = middle_stress(strained, elasticity, strains(:6, element), &
-                           shear_of_ply(plate, strains, ply, element))
-    stress(1:2) = stress(1:2) + failures%carried_by_cracks(ply, element)
+    associate (number => plate%layup%stacks(plate%layup%stack(element))%number(place))
+      stress = middle_stress(strained_ply(plate, failures, place, element), elasticity, strains(:6), shear)
+      stress(1:2) = stress(1:2) + failures%carried_by_cracks(number, element)
+    end associate
   end function stress_of_ply
 
   !> A ply of an element with its permanent strain.
-  pure function strained_ply(plate, failures, number, element) result(ply)
+  pure function strained_ply(plate, failures, place, element) result(ply)
     type(composite_plate_t), intent(in) :: plate
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
-    !> Number of the ply, and element of this rank that has it
-    integer, intent(in) :: number, element
+    !> Place of the ply in the element's stack, and element of this rank
+    integer, intent(in) :: place, element
     type(ply_t) :: ply
 
     associate (stack => plate%layup%stacks(plate%layup%stack(element)))
-      ply = stack%plies(stack%place(number))
+      ply = stack%plies(place)
+      if (allocated(failures%bands)) &
+        ply%free_strain(3) = failures%bands%states%permanent_shear(stack%number(place), element)
     end associate
-    if (allocated(failures%bands)) ply%free_strain(3) = failures%bands%states%permanent_shear(number, element)
   end function strained_ply
-
-  !> Transverse shear stress of one ply of one element.
-  pure function shear_of_ply(plate, strains, ply, element) result(shear)
-    type(composite_plate_t), intent(in) :: plate
-    !> Result of element_strains
-    real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate, and element of this rank with this ply
-    integer, intent(in) :: ply, element
-    !> xz, yz
-    real(wp) :: shear(2)
-
-    associate (stack => plate%layup%stacks(plate%layup%stack(element)))
-      associate (all => stack%shear_stresses(strains(7:8, element)))
-        shear = all(:, stack%place(ply))
-      end associate
-    end associate
-  end function shear_of_ply
-
-  !> True if an element of this rank has a ply.
-  pure logical function has_ply(plate, ply, element)
-    type(composite_plate_t), intent(in) :: plate
-    !> Ply of the laminate, and element
-    integer, intent(in) :: ply, element
-
-    has_ply = plate%layup%stacks(plate%layup%stack(element))%has(ply)
-  end function has_ply
 end module element_stresses

@@ -1,7 +1,7 @@
 !> Flaws of interfaces by cracks of adjacent plies (doc/theory/interfaces.md, flaws beside cracked plies).
 module crack_flaws
   use delamination_parameters, only: law_cohesive
-  use element_stresses, only: element_strains, has_ply, stress_of_ply
+  use element_stresses, only: element_strains, stress_of_ply
   use in_situ_strengths, only: crack_strengths
   use interface_flaws, only: reachable_cells, weaken_beside
   use interface_states, only: interface_state_t
@@ -28,7 +28,6 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
-    real(wp), allocatable :: strains(:, :)
     logical :: beside(size(plate%mesh%zones)), cracked(product(plate%mesh%cells))
     integer :: zone, ply
 
@@ -47,80 +46,89 @@ contains
       end associate
     end do
     if (.not. any(plate%setup%delaminations%shear_cracks)) return
-    strains = element_strains(plate, plies, displacement)
-    do ply = 1, plate%mesh%plies
-      call weaken_by_shear(plate, plies, strains, ply, interfaces)
-    end do
+    call weaken_by_shear(plate, plies, element_strains(plate, plies, displacement), interfaces)
   end subroutine update_flaws
 
-  !> Reduces the strengths of the interfaces of a ply beside its cracks by transverse shear: a cracked ply transmits no
-  !> more than its own shear strength. Collective.
-  subroutine weaken_by_shear(plate, plies, strains, ply, interfaces)
+  !> Reduces the strengths of the interfaces of plies beside their cracks by transverse shear: a cracked ply transmits
+  !> no more than its own shear strength. Collective.
+  subroutine weaken_by_shear(plate, plies, strains, interfaces)
     type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
-    integer, intent(in) :: ply
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
-    type(matrix_strengths_t) :: strengths
-    real(wp) :: parts(size(plate%mesh%zones)), reach
-    logical :: beside(size(parts)), cracked(product(plate%mesh%cells))
-    integer :: zone
+    type(matrix_strengths_t) :: strengths(plate%mesh%plies)
+    !> Part of its strength that an interface has beside cracks of a ply; 1: all of it, (zones, plies)
+    real(wp) :: parts(size(plate%mesh%zones), plate%mesh%plies), reach(plate%mesh%plies)
+    logical :: cracked(product(plate%mesh%cells), plate%mesh%plies)
+    integer :: ply, zone
 
-    reach = block_thickness(plate%layup%laminates(1)%plies, ply)
-    associate (setup => plate%setup, below => plate%mesh%zones%below_ply)
-      strengths = crack_strengths(plate%layup%laminates(1)%plies, ply, setup%materials, setup%ply_damage)
-      beside = (below == ply .or. below == ply - 1) .and. setup%delaminations%law == law_cohesive .and. &
-               setup%delaminations%shear_cracks
-      parts = 1
-      where (beside) parts = shear_across_strength(strengths)/setup%delaminations%strength_shear
-      beside = parts < 1
-    end associate
-    if (.not. any(beside)) return
     cracked = .false.
-    do zone = 1, size(beside)
-      if (beside(zone)) cracked = cracked .or. reachable_cells(plate%mesh, zone, reach)
+    do ply = 1, size(reach)
+      associate (setup => plate%setup, below => plate%mesh%zones%below_ply, all => plate%layup%laminates(1)%plies)
+        reach(ply) = block_thickness(all, ply)
+        strengths(ply) = crack_strengths(all, ply, setup%materials, setup%ply_damage)
+        parts(:, ply) = 1
+        where ((below == ply .or. below == ply - 1) .and. setup%delaminations%law == law_cohesive .and. &
+               setup%delaminations%shear_cracks) &
+          parts(:, ply) = min(1.0_wp, shear_across_strength(strengths(ply))/setup%delaminations%strength_shear)
+      end associate
+      do zone = 1, size(parts, 1)
+        if (parts(zone, ply) < 1) &
+          cracked(:, ply) = cracked(:, ply) .or. reachable_cells(plate%mesh, zone, reach(ply))
+      end do
     end do
-    cracked = sheared_cells(plate, plies, strains, ply, cracked, strengths)
-    do zone = 1, size(beside)
-      if (beside(zone)) call weaken_beside(interfaces%cohesive, plate, zone, cracked, reach, parts(zone))
+    call find_sheared_cells(plate, plies, strains, strengths, cracked)
+    do ply = 1, size(reach)
+      do zone = 1, size(parts, 1)
+        if (parts(zone, ply) < 1) call weaken_beside(interfaces%cohesive, plate, zone, cracked(:, ply), reach(ply), &
+                                                     parts(zone, ply))
+      end do
     end do
   end subroutine weaken_by_shear
 
-  !> Cells in which a ply has started to crack or reaches its strength with transverse shear included, on all ranks.
+  !> Cells in which plies have started to crack or reach their strength with transverse shear included, on all ranks.
   !> Collective.
-  function sheared_cells(plate, plies, strains, ply, reachable, strengths) result(cracked)
+  subroutine find_sheared_cells(plate, plies, strains, strengths, cells)
     type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
-    integer, intent(in) :: ply
-    !> Cells in which a crack affects an interface of the ply, (cells of the mesh)
-    logical, intent(in) :: reachable(:)
-    !> The ply's strengths
-    type(matrix_strengths_t), intent(in) :: strengths
-    !> (cells of the mesh)
-    logical, allocatable :: cracked(:)
-    logical :: cracks(size(strains, 2))
+    !> Strengths of the plies
+    type(matrix_strengths_t), intent(in) :: strengths(:)
+    !> Cells in which a crack of a ply affects an interface; returns those of them with cracks, (cells, plies)
+    logical, intent(inout) :: cells(:, :)
+    real(wp) :: found(size(cells))
     type(elasticity_t) :: left
-    integer :: i
+    integer :: i, cell, ply, place
 
-    do i = 1, size(cracks)
-      cracks(i) = reachable(plate%mesh%element_cell(plate%distribution%elements(i)))
-      if (cracks(i)) cracks(i) = has_ply(plate, ply, i)
-      if (.not. cracks(i)) cycle
-      left = plies%elasticity(plate, ply, i)
+    found = 0
+    do i = 1, size(strains, 2)
+      cell = plate%mesh%element_cell(plate%distribution%elements(i))
+      if (.not. any(cells(cell, :))) cycle
       associate (stack => plate%layup%stacks(plate%layup%stack(i)))
-        cracks(i) = left%e2 < stack%plies(stack%place(ply))%elasticity%e2
+        associate (shear => stack%shear_stresses(strains(7:8, i)))
+          do place = 1, size(stack%number)
+            ply = stack%number(place)
+            if (ply > size(cells, 2)) cycle
+            if (.not. cells(cell, ply)) cycle
+            left = plies%elasticity(plate, ply, i)
+            if (left%e2 < stack%plies(place)%elasticity%e2) then
+              found(cell + (ply - 1)*size(cells, 1)) = 1
+            else if (cracks_on_a_plane(strengths(ply), stress_of_ply(plate, plies, left, strains(:, i), &
+                                                                     shear(:, place), place, i))) then
+              found(cell + (ply - 1)*size(cells, 1)) = 1
+            end if
+          end do
+        end associate
       end associate
-      if (.not. cracks(i)) &
-        cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(plate, plies, left, strains, ply, i))
     end do
-    cracked = cells_of(plate, cracks)
-  end function sheared_cells
+    call plate%communicator%maximum(found)
+    cells = reshape(found > 0, shape(cells))
+  end subroutine find_sheared_cells
 
   !> Cells with matrix cracks in a ply, on all ranks. Collective.
   function cracked_cells(plate, plies, ply) result(cracked)
