@@ -148,8 +148,10 @@ contains
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
       do i = 1, model%plate%distribution%owned
         if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
-        if (model%rig%elastic) &
-          call stored%add(-model%rig%clamp_preload(i)*sum(u(3, i:last_layer(model%plate%map%above, i))))
+        if (model%rig%elastic) then
+          if (model%rig%clamp_preload(i) > 0) &
+            call stored%add(-model%rig%clamp_preload(i)*sum(u(3, i:last_layer(model%plate%map%above, i))))
+        end if
         if (.not. allocated(cohesive%cohesive)) cycle
         if (.not. (model%plate%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0 .or. cohesive%by_energy(i)) then
@@ -185,7 +187,8 @@ contains
     kept = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, plate, now, 1.0_wp)
     now%motion%velocity = kept*now%motion%velocity
-    call method%stacks%damp(kept)
+    method%stacks%history%work = kept*method%stacks%history%work
+    method%stacks%history%rubbing(2) = kept*method%stacks%history%rubbing(2)
     method%rigs%approach = kept*method%rigs%approach
     method%lines%change = kept*method%lines%change
     now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, plate, now, kept)

@@ -9,7 +9,7 @@ module central_differences
   use batch_strains, only: depends_on_slopes
   use central_difference_parameters, only: central_difference_parameters_t
   use field_mappings, only: motion_field
-  use impactor_steps, only: impactor_steps_t, create_impactor_steps
+  use impactor_steps, only: impactor_steps_t
   use front_onsets, only: front_onsets_t, create_front_onsets
   use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
   use interface_stacks, only: create_interface_stacks
@@ -26,6 +26,7 @@ module central_differences
   use stack_motions, only: move_stacks, nodal_steps_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t, commensurate_step
+  use struck_patches, only: create_struck_patch
   implicit none
   private
   public :: central_difference_t
@@ -98,7 +99,8 @@ contains
     self%rigs = create_rig_steps(model)
     self%lines = create_line_steps(model, self%inertia)
     self%onsets = create_front_onsets(model%plate)
-    self%impact = create_impactor_steps(model, now%impact%impactor%velocity)
+    self%impact%velocity = now%impact%impactor%velocity
+    self%impact%patch = create_struck_patch(model)
     self%impact%patch%offset = merge(-now%impact%patch%touched_at, now%impact%patch%offset, allocated(model%nose))
     self%impact%patch%inverse = self%impact%patch%points%gathered(model%plate%communicator, &
                                                                   self%inertia%inverse_of_images())

@@ -8,11 +8,11 @@ module impactor_steps
   use smooth_starts, only: smooth_ramp
   use states, only: state_t
   use step_lengths, only: step_lengths_t
-  use struck_patches, only: struck_patch_t, create_struck_patch
+  use struck_patches, only: struck_patch_t
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_stiffness, indentation_t
   implicit none
   private
-  public :: impactor_steps_t, create_impactor_steps
+  public :: impactor_steps_t
 
   !> Factor of the contact stiffness for which a new step length is chosen, so that the length changes only a few times.
   !> A step limited by contact is shorter by a factor of sqrt(2) at most.
@@ -39,17 +39,6 @@ module impactor_steps
   end type impactor_steps_t
 
 contains
-
-  !> The impactor at the start. Collective.
-  function create_impactor_steps(model, velocity) result(self)
-    type(model_t), intent(in) :: model
-    !> Its velocity
-    real(wp), intent(in) :: velocity
-    type(impactor_steps_t) :: self
-
-    self%patch = create_struck_patch(model)
-    self%velocity = velocity
-  end function create_impactor_steps
 
   !> Square of the frequency of the contact spring between the impactor and the mass under the patch, with the largest
   !> stiffness so far times this factor, theory (T6). The contact with a nose adds the springs of its points, of which

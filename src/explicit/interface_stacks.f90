@@ -56,7 +56,6 @@ module interface_stacks
     procedure :: begin_softening
     procedure :: may_separate
     procedure :: mark_damaged
-    procedure :: damp
     procedure :: copy_to_dependents
     procedure :: visit
   end type interface_stacks_t
@@ -195,16 +194,6 @@ contains
       end associate
     end do
   end subroutine mark_damaged
-
-  !> Reduces the work done in the last step by a factor of the velocities.
-  pure subroutine damp(self, ratio)
-    class(interface_stacks_t), intent(inout) :: self
-    !> The factor
-    real(wp), intent(in) :: ratio
-
-    self%history%work = ratio*self%history%work
-    self%history%rubbing(2) = ratio*self%history%rubbing(2)
-  end subroutine damp
 
   !> Copies the state of the interfaces of masters to their dependents.
   pure subroutine copy_to_dependents(self, inertia, cohesive)

@@ -24,7 +24,7 @@ module line_steps
     !> Points with prescribed components
     integer, allocatable :: points(:)
     !> Line that prescribes a component; 0: a support that moves; -1: none, (5, points)
-    integer, allocatable, private :: line(:, :)
+    integer, allocatable :: line(:, :)
     !> Height at which u or v is prescribed, and rate of the component in the step, (5, points)
     real(wp), allocatable, private :: height(:, :), rate(:, :)
     !> Velocities of displacement and rotation, or of w, per unit velocity of the component, (2, 5, points)
@@ -36,7 +36,6 @@ module line_steps
     !> Work of the lines so far, (points)
     real(wp), allocatable :: work(:)
   contains
-    procedure :: is_prescribed
     procedure :: project
     procedure :: start_from
     procedure :: find_rates
@@ -82,14 +81,6 @@ contains
 
     self%points = pack([(p, p=1, size(self%work))], any(self%line >= 0, 1))
   end subroutine list_points
-
-  !> True: a component of a point is prescribed.
-  pure logical function is_prescribed(self, p)
-    class(line_steps_t), intent(in) :: self
-    integer, intent(in) :: p
-
-    is_prescribed = any(self%line(:, p) >= 0)
-  end function is_prescribed
 
   !> Projects the prescribed components out of the inverse inertia, of each layer displacements before rotations: the
   !> moment of a line that rotates a layer excludes the moments of the forces of lines that displace it at its middle.

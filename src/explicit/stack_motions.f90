@@ -72,11 +72,11 @@ contains
     type(nodal_steps_t), intent(in) :: nodes
     !> One for each stack
     logical :: constrained(size(nodes%stacks%first))
-    integer :: i, p
+    integer :: i
 
     do i = 1, size(constrained)
       associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
-        constrained(i) = nodes%rigs%on_frame(first) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
+        constrained(i) = nodes%rigs%on_frame(first) .or. any(nodes%lines%line(:, first:last) >= 0)
       end associate
     end do
   end function are_constrained

@@ -5,8 +5,8 @@ module band_states
   use field_mappings, only: ply_field, ply_shear_field
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
-  use ply_damage_parameters, only: energy_modes, failure_modes, fibre_compression, fibre_tension, &
-                                   matrix_compression, matrix_cracking, matrix_crushing, matrix_tension
+  use ply_damage_parameters, only: energy_modes, failure_modes, matrix_compression, matrix_cracking, &
+                                   matrix_crushing, matrix_tension
   implicit none
   private
   public :: band_states_t, new_band_states
@@ -28,15 +28,8 @@ module band_states
   contains
     procedure :: accept
     procedure :: at
-    !> Accepted states of an element; true if one has damage.
-    procedure :: of_element
     procedure :: damaged
     procedure :: failed_modes
-    procedure :: fibres_crushed
-    !> Damage of a ply of an element, and the stresses that its closed cracks carry.
-    procedure :: accepted_damage
-    procedure :: carried_by_cracks
-    procedure :: permanent_shear
     procedure :: visit
   end type band_states_t
 
@@ -94,22 +87,13 @@ contains
     end associate
   end subroutine accept
 
-  !> Accepted states of an element.
-  pure function of_element(self, element) result(states)
-    class(band_states_t), intent(in) :: self
-    integer, intent(in) :: element
-    !> Of its plies
-    type(band_state_t) :: states(self%range(2, element) - self%range(1, element) + 1)
-
-    states = self%accepted(self%offset(element) + self%range(1, element):self%offset(element) + self%range(2, element))
-  end function of_element
-
   !> True if a ply of an element has damage in the accepted state.
   pure logical function damaged(self, element)
     class(band_states_t), intent(in) :: self
     integer, intent(in) :: element
 
-    damaged = any(is_damaged(self%of_element(element)))
+    damaged = any(is_damaged(self%accepted(self%offset(element) + self%range(1, element): &
+                                           self%offset(element) + self%range(2, element))))
   end function damaged
 
   !> Failed modes of a ply of an element in the trial: the ply has failed where its stress is zero, its matrix by
@@ -130,51 +114,6 @@ contains
       failed(matrix_cracking) = .not. failed(matrix_crushing)
     end associate
   end function failed_modes
-
-  !> True: the fibres of a ply of an element have failed and dissipated more energy in compression than in tension, in
-  !> the trial.
-  pure logical function fibres_crushed(self, ply, element)
-    class(band_states_t), intent(in) :: self
-    !> Ply and element of this rank that has it
-    integer, intent(in) :: ply, element
-    integer :: at
-
-    at = self%at(ply, element)
-    associate (state => self%trial(at))
-      fibres_crushed = state%damage(1) >= 1 .and. state%dissipated(fibre_compression) > state%dissipated(fibre_tension)
-    end associate
-  end function fibres_crushed
-
-  !> Damage of fibres and matrix of a ply of an element in the last accepted state.
-  pure function accepted_damage(self, ply, element) result(damage)
-    class(band_states_t), intent(in) :: self
-    !> Ply and element of this rank that has it
-    integer, intent(in) :: ply, element
-    !> From 0 to 1
-    real(wp) :: damage(2)
-
-    damage = self%accepted(self%at(ply, element))%damage
-  end function accepted_damage
-
-  !> Stresses along and across the fibres that closed cracks of a ply of an element carry in the trial.
-  pure function carried_by_cracks(self, ply, element) result(stresses)
-    class(band_states_t), intent(in) :: self
-    !> Ply and element of this rank that has it
-    integer, intent(in) :: ply, element
-    !> Negative in compression
-    real(wp) :: stresses(2)
-
-    stresses = self%trial(self%at(ply, element))%recovered(:2)
-  end function carried_by_cracks
-
-  !> Permanent shear strain of a ply of an element in the trial.
-  pure real(wp) function permanent_shear(self, ply, element) result(strain)
-    class(band_states_t), intent(in) :: self
-    !> Ply and element of this rank that has it
-    integer, intent(in) :: ply, element
-
-    strain = self%trial(self%at(ply, element))%permanent
-  end function permanent_shear
 
   !> Saves or loads the accepted states. Collective.
   subroutine visit(self, archive, plate)

@@ -4,14 +4,13 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
-  use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain
+  use band_energies, only: resultants_without_strain
   use band_states, only: band_states_t, new_band_states
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, soften_band, &
                          degraded_elasticity, is_damaged, stiffness_lost, tensile_stress
   use crack_band_limits, only: may_soften, onset_strain
   use drawn_strengths, only: drawn_strengths_t, new_drawn_strengths
   use element_batches, only: batch_of, first_element, lane_of, lanes
-  use exact_sums, only: exact_sum_t
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
   use laminate_laws, only: find_laws
@@ -81,8 +80,6 @@ module crack_band_sections
     procedure :: commit
     procedure :: commit_sections
     procedure :: update_strengths
-    procedure :: dissipation_sums
-    procedure :: dissipated
     procedure :: elasticity
     procedure :: visit
   end type crack_band_sections_t
@@ -336,24 +333,6 @@ contains
     call self%volumes%update(plate%communicator, self%states, self%plies, self%area, plate%mesh%multiplicity)
     self%bands%along(1) = self%volumes%strengths()
   end subroutine update_strengths
-
-  !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
-  pure function dissipation_sums(self) result(energies)
-    class(crack_band_sections_t), intent(in) :: self
-    !> In the order of the modes
-    type(exact_sum_t) :: energies(energy_modes)
-
-    energies = dissipated_in_trial(self%states, self%plies, self%area, self%touched)
-  end function dissipation_sums
-
-  !> Energy dissipated so far in each mode and by permanent shear, of this rank's elements, as exact sums.
-  pure function dissipated(self) result(energies)
-    class(crack_band_sections_t), intent(in) :: self
-    !> In the order of the modes, then permanent shear
-    type(exact_sum_t) :: energies(energy_modes + 1)
-
-    energies = dissipated_so_far(self%states, self%plies, self%bands, self%area, self%touched)
-  end function dissipated
 
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)

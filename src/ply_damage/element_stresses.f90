@@ -91,8 +91,10 @@ contains
 
     associate (stack => plate%layup%stacks(plate%layup%stack(element)))
       ply = stack%plies(place)
-      if (allocated(failures%bands)) &
-        ply%free_strain(3) = failures%bands%states%permanent_shear(stack%number(place), element)
+      if (.not. allocated(failures%bands)) return
+      associate (states => failures%bands%states)
+        ply%free_strain(3) = states%trial(states%at(stack%number(place), element))%permanent
+      end associate
     end associate
   end function strained_ply
 end module element_stresses

@@ -4,6 +4,7 @@ module ply_failures
   use internal_forces, only: add_internal_force
   use kinds, only: wp
   use archives, only: archive_t
+  use band_energies, only: dissipated_in_trial, dissipated_so_far
   use bimodular_sections, only: bimodular_sections_t, new_bimodular_sections
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
   use element_batches, only: batch_of, lane_of
@@ -57,7 +58,6 @@ module ply_failures
     procedure :: measure_lag
     procedure :: total_dissipation
     procedure :: stressed_volume
-    procedure :: strained_plies
     procedure :: carried_by_cracks
     procedure :: failed
     procedure :: failed_in_elements
@@ -169,7 +169,10 @@ contains
 
     energy = 0
     if (.not. allocated(self%bands)) return
-    energies = totals_of(plate%communicator, self%bands%dissipation_sums())*plate%mesh%multiplicity
+    associate (b => self%bands)
+      energies = totals_of(plate%communicator, dissipated_in_trial(b%states, b%plies, b%area, b%touched))
+    end associate
+    energies = energies*plate%mesh%multiplicity
     self%dissipated = self%dissipated + energies
     energy = sum(energies)
   end subroutine record
@@ -180,7 +183,10 @@ contains
     type(composite_plate_t), intent(in) :: plate
     real(wp) :: energies(energy_modes + 1)
 
-    energies = totals_of(plate%communicator, self%bands%dissipated())*plate%mesh%multiplicity
+    associate (b => self%bands)
+      energies = totals_of(plate%communicator, dissipated_so_far(b%states, b%plies, b%bands, b%area, b%touched))
+    end associate
+    energies = energies*plate%mesh%multiplicity
     self%dissipated = energies(:energy_modes)
     self%permanent_shear = energies(energy_modes + 1)
   end subroutine total_dissipation
@@ -259,21 +265,6 @@ contains
     if (allocated(self%bands%volumes)) volume = self%bands%volumes%volume_at_failure(ply)
   end function stressed_volume
 
-  !> Plies of an element with their permanent strains.
-  pure function strained_plies(self, plate, element) result(plies)
-    class(ply_failure_t), intent(in) :: self
-    type(composite_plate_t), intent(in) :: plate
-    integer, intent(in) :: element
-    type(ply_t), allocatable :: plies(:)
-    integer :: i
-
-    associate (stack => plate%layup%stacks(plate%layup%stack(element)))
-      plies = stack%plies
-      if (allocated(self%bands)) &
-        plies%free_strain(3) = [(self%bands%states%permanent_shear(stack%number(i), element), i=1, size(plies))]
-    end associate
-  end function strained_plies
-
   !> Stresses along and across the fibres that closed cracks of a ply of an element carry, uniform over its volume.
   pure function carried_by_cracks(self, ply, element) result(stresses)
     class(ply_failure_t), intent(in) :: self
@@ -283,7 +274,7 @@ contains
     real(wp) :: stresses(2)
 
     stresses = 0
-    if (allocated(self%bands)) stresses = self%bands%states%carried_by_cracks(ply, element)
+    if (allocated(self%bands)) stresses = self%bands%states%trial(self%bands%states%at(ply, element))%recovered(:2)
   end function carried_by_cracks
 
   !> Reduced elastic constants of the plies of an element.
@@ -368,6 +359,7 @@ contains
     class(ply_failure_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
     type(composite_plate_t), intent(in) :: plate
+    type(ply_t), allocatable :: plies(:)
     integer :: mode, element, i
 
     call self%modes%visit(archive, plate)
@@ -382,11 +374,13 @@ contains
     if (plate%setup%ply_damage%is_present) call visit_stiffness(archive, 'ply_failure/stiffness', plate, self%stiffness)
     if (.not. (archive%loading .and. allocated(self%free) .and. plate%setup%ply_damage%is_present)) return
     do element = 1, plate%elements%elements
-      associate (plies => plate%layup%stacks(plate%layup%stack(element))%number)
-        self%free(lane_of(element), :, batch_of(element)) = &
-          free_resultants(self%strained_plies(plate, element), self%elasticities(plate, element))
+      associate (stack => plate%layup%stacks(plate%layup%stack(element)))
+        plies = stack%plies
+        if (allocated(self%bands)) plies%free_strain(3) = &
+          [(self%bands%states%trial(self%bands%states%at(stack%number(i), element))%permanent, i=1, size(plies))]
+        self%free(lane_of(element), :, batch_of(element)) = free_resultants(plies, self%elasticities(plate, element))
         if (.not. allocated(self%signs)) cycle
-        if (any([(self%modes%failed(plies(i), element), i=1, size(plies))])) &
+        if (any([(self%modes%failed(stack%number(i), element), i=1, size(plies))])) &
           call self%signs%reduce(element, self%elasticities(plate, element), &
                                  self%free(lane_of(element), :, batch_of(element)))
       end associate

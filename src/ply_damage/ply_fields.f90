@@ -8,6 +8,7 @@ module ply_fields
   use composite_plates, only: composite_plate_t
   use output_parameters, only: output_t, field_ply_damage, field_stress, field_face_stress
   use plies, only: elasticity_t
+  use ply_damage_parameters, only: fibre_compression, fibre_tension
   use ply_failures, only: ply_failure_t
   use result_tables, only: result_row_length
   use text, only: to_text
@@ -87,7 +88,8 @@ contains
     end do
   end subroutine write_ply_fields
 
-  !> 1 in elements in which the fibres of a ply have failed by compression, else 0.
+  !> 1 in elements in which the fibres of a ply have failed and dissipated more energy in compression than in tension,
+  !> else 0.
   pure function crushed_in(plate, bands, ply) result(crushed)
     type(composite_plate_t), intent(in) :: plate
     !> Softening plies
@@ -100,7 +102,10 @@ contains
     crushed = 0
     do element = 1, size(crushed, 2)
       if (.not. plate%layup%stacks(plate%layup%stack(element))%has(ply)) cycle
-      if (bands%states%fibres_crushed(ply, element)) crushed(1, element) = 1
+      associate (state => bands%states%trial(bands%states%at(ply, element)))
+        if (state%damage(1) >= 1 .and. state%dissipated(fibre_compression) > state%dissipated(fibre_tension)) &
+          crushed(1, element) = 1
+      end associate
     end do
   end function crushed_in
 

@@ -87,7 +87,9 @@ contains
     do i = 1, plate%elements%elements
       associate (stack => plate%layup%stacks(plate%layup%stack(i)), area => state%plies%bands%area(i))
         do ply = 1, size(stack%number)
-          damage = state%plies%bands%states%accepted_damage(stack%number(ply), i)
+          associate (states => state%plies%bands%states)
+            damage = states%accepted(states%at(stack%number(ply), i))%damage
+          end associate
           call fibres%add(area*damage(1))
           call matrix%add(area*damage(2))
         end do
