@@ -237,7 +237,7 @@ contains
     self%pending(element) = .true.
     joined = moments
     if (self%joined%shares(element)) then
-      means = self%joined%means_of(element)
+      means = self%joined%means_of(element, self%joined%values)
       joined = moments_from(means(:moment_values))
     end if
     membrane = invariant_measure(joined%membrane)

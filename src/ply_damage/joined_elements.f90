@@ -42,6 +42,8 @@ module joined_elements
     !> Moments of the strains of each, a bound of its strains, and, where shear strains may be permanent, mean squares
     !> of the elastic shear strains of its plies, (moment_values + 1 + plies, numbers)
     real(wp), allocatable, private :: moments(:, :)
+    !> Number of means: of moments, and of plies
+    integer :: values = moment_values
     !> Sends the strains of elements joined across ranks
     type(column_exchange_t), private :: across
   contains
@@ -64,7 +66,7 @@ contains
     type(joined_elements_t) :: self
     integer, allocatable :: numbers(:), parts(:, :)
     logical, allocatable :: joined(:, :), mine(:)
-    integer :: element, plies
+    integer :: element
 
     associate (mesh => plate%mesh, elements => plate%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
@@ -83,10 +85,9 @@ contains
         self%area(numbers(element)) = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
       end do
     end associate
-    plies = 0
-    if (plate%setup%ply_damage%permanent_shear) &
-      plies = sum([(size(plate%layup%laminates(element)%plies), element=1, size(plate%layup%laminates))])
-    allocate (self%moments(moment_values + 1 + plies, size(self%area)), source=0.0_wp)
+    if (plate%setup%ply_damage%permanent_shear) self%values = moment_values &
+      + sum([(size(plate%layup%laminates(element)%plies), element=1, size(plate%layup%laminates))])
+    allocate (self%moments(self%values + 1, size(self%area)), source=0.0_wp)
     allocate (self%concerned(plate%elements%batches), source=.false.)
     do element = 1, size(self%number)
       if (self%number(element) > 0) self%concerned(batch_of(element)) = .true.
@@ -276,23 +277,26 @@ contains
   end subroutine visit
 
   !> Means of an element and those joined with it, over their total area, for the elastic strains of its plies.
-  pure function means_of(self, element) result(means)
+  pure function means_of(self, element, values) result(means)
     class(joined_elements_t), intent(in) :: self
     !> Element of this rank that shares its state
     integer, intent(in) :: element
+    !> Number of the leading values: 6 mean strains, all moments with `moment_values`, those of plies with `self%values`
+    integer, intent(in) :: values
     !> The means, without the bound of strains
-    real(wp), allocatable :: means(:)
+    real(wp) :: means(values)
     real(wp) :: total
-    integer :: i
+    integer :: i, last
 
-    allocate (means(size(self%moments, 1) - 1), source=0.0_wp)
+    means = 0
     total = 0
+    last = min(values, moment_values)
     associate (parts => self%parts(:, self%number(element)))
       do i = 1, most
         if (parts(i) == 0) exit
-        associate (column => self%moments(:, parts(i)), area => self%area(parts(i)), n => moment_values)
-          means(:n) = means(:n) + column(:n)*area
-          means(n + 1:) = means(n + 1:) + column(n + 2:)*area
+        associate (column => self%moments(:, parts(i)), area => self%area(parts(i)))
+          means(:last) = means(:last) + column(:last)*area
+          means(last + 1:) = means(last + 1:) + column(last + 2:values + 1)*area
           total = total + area
         end associate
       end do
@@ -357,15 +361,13 @@ contains
     !> Of each element, from `strain_moments`
     real(wp), intent(in) :: moments(lanes, moment_values)
     real(wp) :: joined(lanes, moment_values)
-    real(wp), allocatable :: means(:)
     integer :: lane
 
     joined = moments
     if (.not. self%concerned(b)) return
     do lane = 1, min(lanes, size(self%number) - first_element(b) + 1)
       if (.not. self%shares(first_element(b) + lane - 1)) cycle
-      means = self%means_of(first_element(b) + lane - 1)
-      joined(lane, :) = means(:moment_values)
+      joined(lane, :) = self%means_of(first_element(b) + lane - 1, moment_values)
     end do
   end function joined_moments
 end module joined_elements

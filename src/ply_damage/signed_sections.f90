@@ -33,7 +33,6 @@ contains
     real(wp), intent(in) :: strains(lanes, 9, 6)
     real(wp) :: resultants(lanes, 7)
     real(wp) :: means(lanes, 6)
-    real(wp), allocatable :: common(:)
     logical :: undamaged(lanes)
     integer :: lane, element
 
@@ -41,10 +40,7 @@ contains
     undamaged = .true.
     do lane = 1, min(lanes, size(touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
-      if (joined%shares(element)) then
-        common = joined%means_of(element)
-        means(lane, :) = common(:6)
-      end if
+      if (joined%shares(element)) means(lane, :) = joined%means_of(element, 6)
       undamaged(lane) = .not. touched(element)
       if (touched(element)) &
         call signs%set_element(element, changed_by_signs(plies, bands, states, element, means(lane, :)))
