@@ -53,12 +53,13 @@ contains
   end function strain_of_stress
 
   !> A strain below which fibres do not kink, in the same measure: the smallest of a grid of directions, less the
-  !> variation of the exposure between two of them.
+  !> variation of the exposure between two of them. Where the strain rate strengthens the matrix, stresses in it count
+  !> less, also those across the fibres that press on them: they are left out, too.
   pure real(wp) function kinking_strain(band) result(strain)
     type(crack_band_t), intent(in) :: band
     integer, parameter :: directions = 60
     real(wp), parameter :: reserve = 0.9_wp
-    real(wp) :: polar, turn, e(3), exposure
+    real(wp) :: polar, turn, e(3), along, across, shear, exposure
     integer :: i, j
 
     exposure = 0
@@ -69,9 +70,12 @@ contains
           turn = pi*j/directions
           e = [cos(polar), sin(polar)*cos(turn), sqrt(2.0_wp)*sin(polar)*sin(turn)]
           associate (q => reduced_stiffness(c))
-            exposure = max(exposure, kinking_exposure(band%matrix%larc, &
-              max(1.0_wp, c%compression)*(q(1)*e(1) + q(2)*e(2)), q(2)*e(1) + q(3)*e(2), q(4)*e(3)))
+            along = max(1.0_wp, c%compression)*(q(1)*e(1) + q(2)*e(2))
+            across = q(2)*e(1) + q(3)*e(2)
+            shear = q(4)*e(3)
           end associate
+          exposure = max(exposure, kinking_exposure(band%matrix%larc, along, across, shear))
+          if (band%rate_gain > 0) exposure = max(exposure, kinking_exposure(band%matrix%larc, along, 0.0_wp, shear))
         end do
       end do
     end associate

@@ -99,7 +99,7 @@ contains
       before = new%damage
       left = remaining_fractions(band, new)
       new%kinked = old%kinked
-      call soften_fibres(band, lengths(1), strains, left, new%kinked, signs(:, 1))
+      call soften_fibres(band, lengths(1), strains, factor, left, new%kinked, signs(:, 1))
       signs(:, 2) = matrix_softening(band, lengths(2), strains, factor, left)
       do i = 1, 2
         new%damage(i) = max(old%damage(i), damage_at(more_damaged(signs(:, i))))
@@ -263,11 +263,13 @@ contains
   end function mean_elasticity
 
   !> Softening laws of the fibres.
-  pure subroutine soften_fibres(band, length, strains, left, kinked, signs)
+  pure subroutine soften_fibres(band, length, strains, factor, left, kinked, signs)
     type(crack_band_t), intent(in) :: band
     !> Length of the element along the fibres
     real(wp), intent(in) :: length
     type(band_strains_t), intent(in) :: strains
+    !> Factor of the matrix strengths
+    real(wp), intent(in) :: factor
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Compressive strength at the onset of kinking, which later loads do not change; 0: not yet
@@ -284,7 +286,7 @@ contains
       if (kinked > 0) then
         exposure = stress/kinked
       else if (band%kinking .and. stress > 0) then
-        exposure = exposure_to_kinking(band, strains, left, -stress)
+        exposure = exposure_to_kinking(band, strains, factor, left, -stress)
         if (exposure > 1) kinked = stress/exposure
       end if
       signs(1) = linear_softening_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, &
@@ -307,10 +309,13 @@ contains
   end function tensile_stress
 
   !> Exposure of compressed fibres to kinking. The stresses across the fibres and in shear are those that the damaged
-  !> matrix transfers: a failed matrix leaves XC.
-  pure real(wp) function exposure_to_kinking(band, strains, left, along) result(exposure)
+  !> matrix transfers: a failed matrix leaves XC. They count relative to the strengths of the matrix, as fibres would
+  !> otherwise kink without load along them before a strengthened matrix cracks.
+  pure real(wp) function exposure_to_kinking(band, strains, factor, left, along) result(exposure)
     type(crack_band_t), intent(in) :: band
     type(band_strains_t), intent(in) :: strains
+    !> Factor of the matrix strengths
+    real(wp), intent(in) :: factor
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Stress along the fibres, negative
@@ -320,8 +325,8 @@ contains
     associate (c => band%elasticity)
       call find_strain_alone(c, strains, left, 2, size, weights)
       across = c%e2*size*(weights(1) - weights(2))
-      across = across*merge(left%open(2), left%closed(2), across > 0)
-      shear = c%g12*sqrt(strains%shear_square)*left%open(2)
+      across = across*merge(left%open(2), left%closed(2), across > 0)/factor
+      shear = c%g12*sqrt(strains%shear_square)*left%open(2)/factor
     end associate
     ! Below 1 its value does not matter.
     exposure = frame_exposure(band%matrix%larc, along, across, shear)
