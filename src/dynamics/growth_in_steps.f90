@@ -1,5 +1,6 @@
 !> Growth of delaminations within a time step.
 module growth_in_steps
+  use section_bounds, only: uniform_stiffness
   use kinds, only: wp
   use errors, only: error_t
   use delamination_parameters, only: growth_equilibrium
@@ -45,8 +46,8 @@ contains
     do
       free = trial%interfaces%contact%free
       fracture = trial%ledger%delamination
-      call grow_fronts(model%plate, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, &
-                       grown)
+      call grow_fronts(model%plate, uniform_stiffness(trial%plies), trial%motion, trial%interfaces, &
+                       trial%ledger%delamination, grown)
       ! The integrators cannot distinguish the energy dissipated by fracture from their own dissipation.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) exit

@@ -1,7 +1,7 @@
 !> Nodes with several layers and the interfaces between them, and their data of earlier steps.
 module interface_stacks
   use archives, only: archive_t
-  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
   use cohesive_laws, only: cohesive_law_t
   use field_mappings, only: vector_fields
   use kinds, only: wp
@@ -172,26 +172,31 @@ contains
     do while (plate%map%above(first) > 0)
       first = plate%map%above(first)
     end do
-    call self%mark_damaged(findloc(self%first, first, 1), cohesive, u)
+    call self%mark_damaged(findloc(self%first, first, 1), plate, cohesive, u)
   end subroutine begin_softening
 
   !> Treats a stack as damaged from the next step on.
-  pure subroutine mark_damaged(self, i, cohesive, u)
+  pure subroutine mark_damaged(self, i, plate, cohesive, u)
     class(interface_stacks_t), intent(inout) :: self
     !> Index of the stack
     integer, intent(in) :: i
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces; their surfaces receive the present jumps as slips
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     real(wp), intent(in) :: u(:, :)
+    real(wp) :: from(3), to(3)
     integer :: p
 
     if (self%damaged(i)) return
     self%damaged(i) = .true.
     do p = self%first(i) + 1, self%first(i) + self%layers(i) - 1
       cohesive%points(p)%sliding%slip = u(1:2, p)
-      associate (last => self%history(p)%change)
-        self%history(p)%work = sum(self%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
-      end associate
+      to = u(1:3, p)
+      from = to - self%history(p)%change
+      ! The pressure of surfaces in contact is not part of the law.
+      if (prevents_penetration(plate, plate%zone(p))) from(3) = max(0.0_wp, from(3))
+      if (prevents_penetration(plate, plate%zone(p))) to(3) = max(0.0_wp, to(3))
+      self%history(p)%work = sum(self%stiffness([1, 1, 2], p)*(to**2 - from**2))/2
     end do
   end subroutine mark_damaged
 

@@ -106,7 +106,7 @@ contains
         if (point%damage > 0) begins = .true.
       end associate
     end do
-    if (begins) call stacks%mark_damaged(i, cohesive, u)
+    if (begins) call stacks%mark_damaged(i, plate, cohesive, u)
   end subroutine start_in_stack
 
   !> Updates damage and friction of damaged stacks, and adds the work of the tractions beyond what surfaces store and

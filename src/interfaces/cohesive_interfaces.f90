@@ -268,8 +268,7 @@ contains
     shear_share = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, plate%distribution%owned
-      if (self%cohesive(i)) shear_share(i) = mode_mixture(plate%interfaces%cohesive_laws(plate%zone(i)), &
-                                                          displacement(1:3, i))
+      if (self%cohesive(i)) shear_share(i) = mode_mixture(self%law_at(plate, i), displacement(1:3, i))
     end do
   end function shear_share
 

@@ -345,7 +345,7 @@ contains
     type(remaining_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
-    real(wp) :: size, weights(2), shear_energy, energy, toughness, across, shear
+    real(wp) :: size, weights(2), shear_energy, energy, toughness, across, shear(2)
 
     associate (c => band%elasticity, g => band%toughness)
       call find_strain_alone(c, strains, left, 2, size, weights)
@@ -356,10 +356,11 @@ contains
       if (energy > 0) &
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))
       across = c%e2*size
-      shear = c%g12*sqrt(strains%shear_square)
-      signs(1) = linear_softening_of(weights(1)*matrix_exposure(band%matrix, across, shear)/factor, energy, toughness, &
-                                     length, matrix_tension)
-      signs(2) = linear_softening_of(weights(2)*matrix_exposure(band%matrix, -across, shear)/factor, energy, &
+      ! Shear has no sign: all of it acts with the larger part of the stress across the fibres.
+      shear = c%g12*sqrt(strains%shear_square)*weights/maxval(weights)
+      signs(1) = linear_softening_of(matrix_exposure(band%matrix, weights(1)*across, shear(1))/factor, energy, &
+                                     toughness, length, matrix_tension)
+      signs(2) = linear_softening_of(matrix_exposure(band%matrix, -weights(2)*across, shear(2))/factor, energy, &
                                      g(matrix_compression), length, matrix_compression)
     end associate
   end function matrix_softening

@@ -6,7 +6,7 @@ module zone_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use laminate_deck, only: find_material
+  use laminate_deck, only: find_material, key_bending_error, laminate_group
   use laminate_parameters, only: laminate_t
   use material_parameters, only: material_t
   use ply_zone_parameters, only: back_face, doubler_t, front_face, ply_drop_t, ply_zone_t
@@ -117,6 +117,7 @@ contains
     doubler%face = face_named(settings, doubler_group, key_face, place)
     call fill_rectangle(settings, doubler_group, place, doubler%at, doubler%size)
     allocate (doubler%laminate%angle(0), doubler%laminate%thickness(0), doubler%laminate%material(0))
+    doubler%laminate%bending_error = settings%real_of(laminate_group, key_bending_error)
     if (.not. settings%is_known(doubler_group, key_stacking, place)) return
     associate (laminate => doubler%laminate)
       call read_sequence(settings%text_of(doubler_group, key_stacking, place), laminate%angle, fault)

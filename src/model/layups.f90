@@ -5,11 +5,12 @@ module layups
   use element_batches, only: batch_of, lane_of, lanes
   use free_strains, only: free_resultants
   use kinds, only: wp
+  use laminate_parameters, only: laminate_t
   use layered_meshes, only: layered_mesh_t
   use mean_stiffnesses, only: in_bending
   use ply_stacks, only: ply_stack_t
   use setups, only: setup_t
-  use stacking, only: section_of, section_t
+  use stacking, only: section_of, section_t, stacked_plies
   implicit none
   private
   public :: layup_t
@@ -22,8 +23,13 @@ module layups
     real(wp) :: thickness = 0
     !> The different laminates of the plate, the skin's first
     type(ply_stack_t), allocatable :: laminates(:)
-    !> Section of the full laminate, and the same with the bending moduli of plies with E1c
+    !> Section of the full laminate; that at the struck point about the middle of all plies there, with the bending
+    !> moduli of plies with E1c
     type(section_t) :: section, bending_section
+    !> Plies at the struck point
+    type(ply_stack_t) :: struck
+    !> Their thickness
+    real(wp) :: struck_thickness = 0
     !> The different stacks of elements, one for each layer of the mesh
     type(ply_stack_t), allocatable :: stacks(:)
     !> Stack of each of this rank's elements, (elements)
@@ -45,6 +51,7 @@ contains
     !> Number of that of each cell, columns first
     integer, allocatable, intent(out) :: laminate_of(:)
     type(cell_line_t) :: columns, rows
+    type(laminate_t) :: local
     integer :: i, j
 
     self%plies = setup%plies()
@@ -61,10 +68,11 @@ contains
         call self%laminates(i)%set_thermal_strains(setup%materials, setup%thermal%temperature_change)
       end do
     end if
-    associate (skin => self%laminates(1)%plies)
-      self%section = section_of(skin, setup%laminate%shear_correction)
-      self%bending_section = section_of(in_bending(skin), setup%laminate%shear_correction)
-    end associate
+    self%section = section_of(self%laminates(1)%plies, setup%laminate%shear_correction)
+    self%struck = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(setup%mesh%struck))
+    local = setup%struck_laminate()
+    self%struck_thickness = sum(local%thickness)
+    self%bending_section = section_of(in_bending(stacked_plies(local, setup%materials)), local%shear_correction)
   end subroutine find_laminates
 
   !> Finds the stack of each layer of the mesh and of each of this rank's elements.

@@ -86,7 +86,7 @@ contains
     do i = 1, 2
       if (-gauges(i) > self%pressed(1, i)) then
         self%pressed(:, i) = [-gauges(i), self%strain, self%stress]
-      else if (.not. self%buckling > 0 .and. self%pressed(1, i) > strains(1)) then
+      else if (.not. self%buckling > 0 .and. self%strain > strains(1)) then
         if (-gauges(i) < (1 - reversed)*self%pressed(1, i) .and. self%stress > self%pressed(3, i)) &
           self%buckling = self%pressed(2, i)
       end if

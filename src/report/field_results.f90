@@ -1,5 +1,6 @@
 !> Fields of the field file, joined from the rows of each folder.
 module field_results
+  use section_bounds, only: uniform_stiffness
   use deck_contents, only: deck_t
   use errors, only: error_t
   use field_datasets, only: global_numbers_t
@@ -118,7 +119,8 @@ contains
     associate (now => stepper%now)
       call fields%begin(shown_time(now%time), now%step, error)
       call write_motion_fields(plate, now%motion, output, fields, error)
-      call write_interface_fields(plate, now%plies%stiffness, now%interfaces, now%motion, output, fields, error)
+      call write_interface_fields(plate, uniform_stiffness(now%plies), now%interfaces, now%motion, output, fields, &
+                                  error)
       call write_stringer_fields(plate, now%motion%displacement, output, fields, error)
       call write_ply_fields(plate, now%plies, now%motion%displacement, output, fields, error)
       call fields%finish(error)

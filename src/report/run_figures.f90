@@ -3,7 +3,6 @@ module run_figures
   use band_energies, only: strengthened_so_far
   use compressed_damage, only: compressed_damage_t, between_supports, damage_of
   use crack_band_sections, only: crack_band_sections_t
-  use delamination_parameters, only: toughnesses
   use dent_depths, only: dent_depth
   use end_sections, only: skin_share
   use errors, only: error_t, exit_done, exit_stopped
@@ -17,7 +16,8 @@ module run_figures
   use projected_areas, only: area_rules, projected_areas_of
   use rank_totals, only: totals_of
   use states, only: state_t
-  use threshold_forces, only: effective_bending_stiffness, patch_factor, threshold_force
+  use setup_scales, only: growth_thresholds
+  use threshold_forces, only: patch_factor
   implicit none
   private
   public :: run_figures_t, ending_t, find_figures, ending_of
@@ -69,8 +69,7 @@ contains
     type(state_t), intent(in) :: now
     !> Its results
     type(run_figures_t), intent(out) :: figures
-    real(wp) :: bending, toughness(2)
-    integer :: zone, zones, along, ply
+    integer :: zones, along, ply
 
     figures%interfaces = figures_of(model%plate, now%interfaces)
     figures%projected_areas = projected_areas_of(model%plate, now%interfaces)
@@ -88,12 +87,7 @@ contains
       figures%skin_share = skin_share(model%plate%setup, along)
     end if
     zones = size(figures%interfaces)
-    bending = effective_bending_stiffness(model%plate%layup%bending_section%stiffness)
-    allocate (figures%threshold(zones))
-    do zone = 1, zones
-      toughness = toughnesses(model%plate%setup%delaminations(zone))
-      figures%threshold(zone) = threshold_force(bending, toughness(2), zones)
-    end do
+    figures%threshold = growth_thresholds(model%plate%setup)
     if (zones /= 1) return
     associate (starter => model%plate%setup%delaminations(1)%starter, patch => model%plate%setup%mesh%patch)
       if (starter > 0) figures%starter_threshold = figures%threshold(1)*patch_factor(patch, starter**2)

@@ -224,8 +224,8 @@ contains
     have_strengths = any([(any(deck%setup%stringers(i)%failure_strains > 0), i=1, size(deck%setup%stringers))])
   end function have_strengths
 
-  !> True: the fibres of every ply have failed over an area as large as patch and contact, so that the contact force has
-  !> no support. Collective.
+  !> True: the fibres of every ply at the struck point have failed over an area as large as patch and contact, so that
+  !> the contact force has no support. Collective.
   logical function is_perforated(model, now)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
@@ -234,9 +234,9 @@ contains
 
     is_perforated = .false.
     counts = failed_counts(model%plate, now%plies)
-    if (counts(fibre_failure) < model%plate%layup%plies) return
+    if (counts(fibre_failure) < size(model%plate%layup%struck%number)) return
     areas = failed_areas(model%plate, now%plies)
-    is_perforated = all(areas(fibre_failure, :) >= &
+    is_perforated = all(areas(fibre_failure, model%plate%layup%struck%number) >= &
       max(model%plate%setup%mesh%patch**2, now%impact%pressed_area(model))*(1 - rounding))
   end function is_perforated
 

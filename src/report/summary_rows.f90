@@ -41,7 +41,8 @@ module summary_rows
     'energy_impact | real | energy | impact energy | Energy of the impactor at first contact.', &
     'energy_absorbed | real | energy | absorbed energy | Energy that the impactor has lost; null in contact.', &
     'energy_impactor | real | energy | impactor | Kinetic energy of the impactor and its potential in gravity.', &
-    'work_external | real | energy | work of the load | Work of pressure and lines.', &
+    'work_external | real | energy | work of the load | Work of pressure and lines, and of the force that moves an &
+      &impactor with a travel.', &
     'energy_kinetic | real | energy | kinetic | Energies as in the history, at the end.', &
     'energy_strain | real | energy | strain | Strain energy.', &
     'energy_indentation | real | energy | indentation | Work of the contact force on the indentation.', &

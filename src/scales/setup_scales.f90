@@ -7,7 +7,7 @@ module setup_scales
   use kinds, only: wp
   use laminate_parameters, only: laminate_t
   use mathematical_constants, only: pi
-  use mesh_parameters, only: curvatures, edge_free, edge_simple, in_plane_fixed
+  use mesh_parameters, only: curvatures, edge_elastic, edge_free, edge_simple, in_plane_fixed
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
@@ -20,7 +20,8 @@ module setup_scales
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
-  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span, free_edges, bending_section
+  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span, free_edges, bending_section, &
+            growth_thresholds
 
   !> Scales of a setup. It has many components because each is one line of the table that users read.
   type :: setup_scales_t
@@ -58,14 +59,13 @@ contains
     !> The setup, checked
     type(setup_t), intent(in) :: setup
     type(setup_scales_t) :: scales
-    type(section_t) :: section, struck
+    type(section_t) :: section
     type(laminate_t) :: local
     type(modal_plate_t) :: plate
     real(wp) :: bent
 
     section = bending_section(setup)
     local = setup%struck_laminate()
-    struck = section_of_laminate(setup, local)
     scales%thickness = sum(local%thickness)
     scales%area_mass = section%mass(1)
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
@@ -76,8 +76,9 @@ contains
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     if (is_stiffened(setup) .and. section%mass(1) > 0) scales%first_period = stiffened_period(setup)
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
-    if (allocated(setup%delaminations)) &
-      scales%threshold = growth_threshold(setup, effective_bending_stiffness(struck%stiffness))
+    if (allocated(setup%delaminations)) then
+      if (size(setup%delaminations) > 0) scales%threshold = minval(growth_thresholds(setup))
+    end if
     scales%onset = onset_force(setup)
     if (.not. setup%is_impact()) return
     associate (m => setup%impactor%mass, v => setup%impactor%velocity, k => setup%impactor%indentation%k)
@@ -224,6 +225,7 @@ contains
     integer :: edges(4)
 
     edges = setup%plate%edges
+    where (edges == edge_elastic) edges = edge_simple
     if (.not. allocated(setup%supports)) return
     if (any(setup%supports%shape /= window_none)) edges = edge_simple
   end function free_edges
@@ -256,22 +258,29 @@ contains
     side = sqrt(pi*radius*indentation) + sum(local%thickness)
   end function contact_side
 
-  !> Delamination threshold force of the interfaces with the smallest toughness.
-  pure real(wp) function growth_threshold(setup, bending) result(force)
+  !> Delamination threshold forces with the toughness of each interface: equal circular delaminations of all interfaces
+  !> at the struck point, where bonds of doublers elsewhere do not lie.
+  pure function growth_thresholds(setup) result(forces)
     type(setup_t), intent(in) :: setup
-    !> Effective bending stiffness
-    real(wp), intent(in) :: bending
-    real(wp) :: toughness(2), least
-    integer :: i
+    real(wp) :: forces(size(setup%delaminations))
+    type(section_t) :: section
+    type(ply_stack_t) :: stack
+    real(wp) :: toughness(2)
+    integer :: i, k, interfaces
 
-    least = huge(least)
-    do i = 1, size(setup%delaminations)
-      toughness = toughnesses(setup%delaminations(i))
-      least = min(least, toughness(2))
+    section = section_of_laminate(setup, setup%struck_laminate())
+    stack = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(setup%mesh%struck))
+    interfaces = size(forces)
+    do i = 1, size(forces)
+      if (.not. setup%delaminations(i)%bonds_doublers()) cycle
+      if (.not. any([(stack%has(setup%delaminations(i)%beside(k)), k=1, size(setup%delaminations(i)%beside))])) &
+        interfaces = interfaces - 1
     end do
-    force = 0
-    if (size(setup%delaminations) > 0) force = threshold_force(bending, least, size(setup%delaminations))
-  end function growth_threshold
+    do i = 1, size(forces)
+      toughness = toughnesses(setup%delaminations(i))
+      forces(i) = threshold_force(effective_bending_stiffness(section%stiffness), toughness(2), max(1, interfaces))
+    end do
+  end function growth_thresholds
 
   !> Force at which interlaminar stresses reach the strength next to the loaded patch. The shear force is distributed
   !> uniformly over the four sides of the patch, and decreases outside as around a circle of this circumference.

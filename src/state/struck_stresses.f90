@@ -5,10 +5,7 @@ module struck_stresses
   use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: mean_strains
   use composite_plates, only: composite_plate_t
-  use laminate_parameters, only: laminate_t
-  use mean_stiffnesses, only: in_bending
   use rank_totals, only: totals_of
-  use stacking, only: section_of, section_t, stacked_plies
   implicit none
   private
   public :: struck_stress
@@ -22,8 +19,6 @@ contains
     real(wp), contiguous, intent(in) :: motion(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
     type(exact_sum_t) :: sums(3)
-    type(section_t) :: section
-    real(wp) :: thickness
     integer :: i, k
 
     do i = 1, size(plate%struck%elements)
@@ -38,28 +33,11 @@ contains
     ! The twist of a plate with mirror symmetry vanishes at the struck point, but not in the mean over the elements of
     ! the modelled part.
     if (any(plate%mesh%mirrored)) curvature(3) = 0
-    call find_section(plate, section, thickness)
-    associate (d => section%stiffness(13:18))
+    associate (d => plate%layup%bending_section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
                 d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &
                 d(3)*curvature(1) + d(5)*curvature(2) + d(6)*curvature(3)]
     end associate
-    stress = 6*norm2(moment)/thickness**2
+    stress = 6*norm2(moment)/plate%layup%struck_thickness**2
   end function struck_stress
-
-  !> Section and thickness of the plate there, with doublers and ply drops about its own mid-plane.
-  pure subroutine find_section(plate, section, thickness)
-    type(composite_plate_t), intent(in) :: plate
-    type(section_t), intent(out) :: section
-    !> Of all plies there
-    real(wp), intent(out) :: thickness
-    type(laminate_t) :: local
-
-    section = plate%layup%bending_section
-    thickness = plate%layup%thickness
-    if (plate%setup%zones%is_empty()) return
-    local = plate%setup%struck_laminate()
-    section = section_of(in_bending(stacked_plies(local, plate%setup%materials)), local%shear_correction)
-    thickness = sum(local%thickness)
-  end subroutine find_section
 end module struck_stresses

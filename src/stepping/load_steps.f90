@@ -1,5 +1,6 @@
 !> Load steps: by load control, or by control of the energy that each dissipates.
 module load_steps
+  use section_bounds, only: uniform_stiffness
   use dissipation_steps, only: dissipation_step_t, new_dissipation_step
   use errors, only: error_t, fail, exit_convergence
   use front_growth, only: find_release_ratio
@@ -94,7 +95,7 @@ contains
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
-      call find_release_ratio(model%plate, trial%plies%stiffness, trial%motion, trial%interfaces)
+      call find_release_ratio(model%plate, uniform_stiffness(trial%plies), trial%motion, trial%interfaces)
     end associate
   end subroutine complete_trial
 

@@ -52,10 +52,10 @@ def impact_case(deck: Deck) -> ImpactCase:
     impactor = impactor_of(deck)
     if set(deck.edges()) != {"simple"}:
         raise deck.error("plate", "the semi-analytic solution needs edges = 'simple' on all sides.")
-    for group in ("pressure", "static", "line", "support"):
+    for group in ("pressure", "static", "line", "support", "stringer"):
         if deck.has(group):
             raise deck.error(group, "the semi-analytic solution admits no load but the impactor, no support but the "
-                                    "edges.")
+                                    "edges, and no stringers.")
     if deck.has("initial_state"):
         raise deck.error("initial_state", "the semi-analytic solution begins with an undamaged plate at rest.")
     if any(deck.numbers("impactor", "at")):

@@ -9,6 +9,7 @@ from implam_post.io.errors import DeckError
 from implam_post.io.history import History
 from implam_post.io.quantities import contact, peak, rebound_velocity, second_peak
 from implam_post.reference.check_impact import notes
+from implam_post.reference.decks import indentation_law_of
 from implam_post.reference.navier import centre_shape, odd_pairs, patch_shape
 from implam_post.reference.semi_analytic import (
     _kernels,
@@ -105,13 +106,21 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(impulse, momentum, delta=1e-12)
 
     def test_refused(self) -> None:
-        """Eccentric impact, lines and initial states are refused."""
+        """Eccentric impact, lines, stringers and initial states are refused."""
         for change in ("&impactor at=0.02, 0 ", "&line at=0 displacement=0 /\n&impactor ",
-                       "&initial_state from='a_restart.h5' /\n&impactor "):
+                       "&stringer at=0 EA=1 /\n&impactor ", "&initial_state from='a_restart.h5' /\n&impactor "):
             with self.subTest(change):
                 self.assertRaisesRegex(DeckError, "the semi-analytic solution", impact_case,
                                        deck(KARAS, ("&impactor ", change)))
         impact_case(deck(KARAS, ("&impactor ", "&impactor at=0, 0 ")))
+
+    def test_struck_face(self) -> None:
+        """Contact stiffness with the modulus E3 of the struck face; that of a laminate has to be given."""
+        laws = [indentation_law_of(deck(SUN_CHEN, ("k=8.112e8", change))) for change in ("E3=7.9e9", "E3=15.8e9", "")]
+        self.assertAlmostEqual(laws[1].stiffness / laws[0].stiffness, 2, delta=1e-12)
+        self.assertAlmostEqual(laws[2].stiffness / laws[0].stiffness, 1, delta=1e-12)
+        self.assertRaisesRegex(DeckError, "k or E3", indentation_law_of,
+                               deck(SUN_CHEN, ("k=8.112e8", "face='laminate'")))
 
     def test_what_it_does_not_model(self) -> None:
         """Notes on large deflection and contact of a sphere."""
