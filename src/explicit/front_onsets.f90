@@ -88,8 +88,32 @@ contains
         end associate
       end associate
     end do
+    call copy_to_images(self, plate, stacks)
     call self%stencils%exchange%update(self%values)
   end subroutine gather
+
+  !> Gives points that share the equations of their image in a full plate the values of that image, the first of all
+  !> images, which is on the same rank.
+  subroutine copy_to_images(self, plate, stacks)
+    !> The search, with the values of independent points; receives those of their images
+    type(front_onsets_t), intent(inout) :: self
+    type(composite_plate_t), intent(in) :: plate
+    type(interface_stacks_t), intent(in) :: stacks
+    real(wp) :: signs(3)
+    integer :: i, k, point
+
+    associate (images => plate%constraints%images)
+      if (.not. allocated(images%points)) return
+      do i = 1, size(self%stencils%points)
+        if (stacks%area(self%stencils%points(i)) > 0) cycle
+        point = plate%distribution%points(self%stencils%points(i))
+        k = minloc(images%points(point, :), dim=1)
+        if (images%points(point, k) >= point) cycle
+        signs = images%signs(:3, k)
+        self%values(:, point) = self%values(:, images%points(point, k))*[signs, signs, 1.0_wp]
+      end do
+    end associate
+  end subroutine copy_to_images
 
   !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
   pure subroutine find_at(self, plate, i, stacks, cohesive, u)
