@@ -100,7 +100,7 @@ contains
     type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: start
     real(wp) :: traction(3)
-    integer :: i
+    integer :: i, k
 
     if (.not. allocated(self%cohesive)) return
     do i = 1, plate%distribution%owned
@@ -112,7 +112,10 @@ contains
         call surfaces%traction(jumps, start, traction, self%points(i))
         self%stiffness(:, i) = area*surfaces%diagonal(jumps, start)
         energy = energy + area*surfaces%stored(jumps, self%points(i))
-        if (allocated(self%tangents)) call store_tangent(self, i, area*surfaces%slopes(jumps, start))
+        if (allocated(self%tangents)) then
+          self%tangents(:, :, i) = area*surfaces%slopes(jumps, start)
+          self%stiffness(:, i) = [(self%tangents(k, k, i), k=1, 3)]
+        end if
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
@@ -140,18 +143,6 @@ contains
       tangents(:, :, i) = plate%interfaces%contact_area(i)*surfaces%slopes(displacement(1:3, i), start)
     end do
   end function tangents_at
-
-  !> Stores a consistent tangent and its diagonal for the operator.
-  pure subroutine store_tangent(self, i, tangent)
-    class(cohesive_interfaces_t), intent(inout) :: self
-    integer, intent(in) :: i
-    !> Force per jump
-    real(wp), intent(in) :: tangent(3, 3)
-    integer :: k
-
-    self%tangents(:, :, i) = tangent
-    self%stiffness(:, i) = [(tangent(k, k), k=1, 3)]
-  end subroutine store_tangent
 
   !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
   pure subroutine add_dissipation_slopes(self, plate, old, displacement, slopes)

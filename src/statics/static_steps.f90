@@ -1,5 +1,6 @@
 !> A load step of a static analysis: full Newton iterations, within those of the augmented Lagrangian.
 module static_steps
+  use cohesive_sliding, only: heat_since
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
@@ -212,7 +213,7 @@ contains
       new%ledger%external_work = old%ledger%external_work + sums(3)
       new%ledger%contact = old%ledger%contact - sums(4)
       fracture = new%interfaces%cohesive%dissipation(model%plate, old%interfaces%cohesive)
-      heat = new%interfaces%friction_heat(model%plate, old%interfaces)
+      heat = heat_since(model%plate, old%interfaces%cohesive, new%interfaces%cohesive)
       new%ledger%friction = old%ledger%friction + heat
       if (model%plate%setup%impactor%is_present) call move_slow_impactor(model%plate, old, new)
       sums(6) = sums(6) + (new%impact%force - old%impact%force)*(new%impact%patch_mean - old%impact%patch_mean)/2
