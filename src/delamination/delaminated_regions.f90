@@ -44,13 +44,20 @@ contains
     type(delaminated_region_t) :: self
     type(cell_line_t) :: line
     real(wp) :: centre(2)
-    integer :: columns(2), rows(2)
+    integer :: columns(2), rows(2), column
 
     self%cells = mesh%cells
     self%columns = mesh%zones(zone)%columns
     self%rows = mesh%zones(zone)%rows
     allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
-    if (present(strip)) call delaminate_strip(self, mesh%along(1)%from(mesh%struck(1)), strip)
+    if (present(strip)) then
+      line = mesh%along(1)%from(mesh%struck(1))
+      associate (x => line%middles())
+        do column = self%columns(1), self%columns(2)
+          if (x(column) > strip(1) .and. x(column) < strip(2)) self%delaminated(column, :) = .true.
+        end do
+      end associate
+    end if
     if (.not. starter > 0) return
     centre = mesh%struck
     if (present(at)) centre = centre + at
@@ -96,22 +103,6 @@ contains
       touches = edges(1) < distance .and. edges(2) > -distance
     end function touches
   end subroutine keep_circle
-
-  !> Delaminates the cells of a zone with the centre in a strip across it.
-  pure subroutine delaminate_strip(self, line, strip)
-    type(delaminated_region_t), intent(inout) :: self
-    !> All columns of cells, from the struck point
-    type(cell_line_t), intent(in) :: line
-    !> First and last x
-    real(wp), intent(in) :: strip(2)
-    real(wp) :: middles(line%cells())
-    integer :: column
-
-    middles = line%middles()
-    do column = self%columns(1), self%columns(2)
-      if (middles(column) > strip(1) .and. middles(column) < strip(2)) self%delaminated(column, :) = .true.
-    end do
-  end subroutine delaminate_strip
 
   !> True for a cell of the zone.
   pure logical function in_zone(self, column, row)
