@@ -103,20 +103,18 @@ contains
     !> Packed as in section_t
     real(wp) :: stiffness(21)
     real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), within(3), excess(3)
+    type(elasticity_t) :: present(size(plies))
     integer :: i
 
     stiffness = section_stiffness(plies(first:last), elasticity, shear_correction)
     if (shear_correction /= shear_energy .or. last - first + 1 == size(plies)) return
     z(0) = plies(1)%z_top
     z(1:) = plies%z_bottom
+    present = plies%elasticity
+    present(first:last) = elasticity
     do i = 1, size(plies)
-      if (i < first .or. i > last) then
-        in_plane(:, i) = in_plane_stiffness(plies(i), plies(i)%elasticity)
-        shear(:, i) = shear_stiffness(plies(i), plies(i)%elasticity)
-      else
-        in_plane(:, i) = in_plane_stiffness(plies(i), elasticity(i - first + 1))
-        shear(:, i) = shear_stiffness(plies(i), elasticity(i - first + 1))
-      end if
+      in_plane(:, i) = in_plane_stiffness(plies(i), present(i))
+      shear(:, i) = shear_stiffness(plies(i), present(i))
     end do
     within = layer_stiffness_from_energy(z, in_plane, shear, first, last)
     excess = within - sqrt(epsilon(within))*stiffness(19:21)
