@@ -13,7 +13,7 @@ module virtual_crack_closure
   use packed_matrices, only: unpacked
   implicit none
   private
-  public :: two_state_release, converted_strains, closure_moments, closure_rates
+  public :: two_state_release, converted_strains, segment_mean, closure_moments, closure_rates
 
   !> Number of moments of a node for the closure integral: forces times powers 0 to 2 of the distance ahead, powers 2 to
   !> 4 of the distance behind, and jumps times its powers 1 and 2. Components are normal to the front, along it and
@@ -94,6 +94,13 @@ contains
     full(7, 7:8) = packed(19:20)
     full(8, 7:8) = packed(20:21)
   end function full_stiffness
+
+  !> Energy release rate of a segment from those of its three nodes (step 3 of section 3.3.3).
+  pure real(wp) function segment_mean(rates) result(mean)
+    !> Energy release rates at the corners and the middle of the segment
+    real(wp), intent(in) :: rates(3)
+    mean = sum(rates)/3
+  end function segment_mean
 
   !> Moments of a node for the closure integral.
   pure function closure_moments(normal, distance, ahead, behind, tied, weight, force, jump) result(figures)

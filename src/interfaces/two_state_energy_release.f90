@@ -16,7 +16,7 @@ module two_state_energy_release
   use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: nodal_strains
   use delamination_fronts, only: front_segment_t
-  use virtual_crack_closure, only: two_state_release, converted_strains
+  use virtual_crack_closure, only: two_state_release, converted_strains, segment_mean
   use motions, only: motion_t
   use composite_plates, only: composite_plate_t
   implicit none
@@ -81,7 +81,7 @@ contains
         smooth = smooth_state(segments, states, common, s, line)
         nodal(line) = two_state_release(common(:, :, s), smooth(:, :, 1), smooth(:, :, 2))
       end do
-      rates(s) = sum(nodal)/3
+      rates(s) = segment_mean(nodal)
     end do
   end function rates_of_states
 
