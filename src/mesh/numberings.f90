@@ -38,7 +38,6 @@ module numberings
     !> Point and component of each row of this rank, (2, rows)
     integer, allocatable, private :: places(:, :)
   contains
-    procedure :: owns
     procedure :: place_of
     procedure :: gather
     procedure :: scatter
@@ -139,15 +138,6 @@ contains
       end do
     end do
   end subroutine find_places
-
-  !> True if this rank has an equation.
-  pure logical function owns(self, equation)
-    class(numbering_t), intent(in) :: self
-    !> Equation, from 0
-    integer, intent(in) :: equation
-
-    owns = equation >= self%first_row .and. equation < self%first_row + self%rows
-  end function owns
 
   !> Point and component of an equation of this rank.
   pure subroutine place_of(self, equation, point, component)
