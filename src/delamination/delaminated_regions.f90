@@ -17,9 +17,7 @@ module delaminated_regions
     !> True where the interface is delaminated, (columns(1):columns(2), rows(1):rows(2))
     logical, allocatable :: delaminated(:, :)
   contains
-    !> True for a cell of the zone; false also for a cell outside the model.
     procedure :: in_zone
-    !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
     procedure :: released
     procedure :: release
@@ -104,7 +102,7 @@ contains
     end function touches
   end subroutine keep_circle
 
-  !> True for a cell of the zone.
+  !> True for a cell of the zone; false also for a cell outside the model.
   pure logical function in_zone(self, column, row)
     class(delaminated_region_t), intent(in) :: self
     !> Column and row of the cell
@@ -113,7 +111,7 @@ contains
               row >= self%rows(1) .and. row <= self%rows(2)
   end function in_zone
 
-  !> True for a delaminated cell.
+  !> True for a delaminated cell; false also outside the zone.
   pure logical function is_delaminated(self, column, row)
     class(delaminated_region_t), intent(in) :: self
     !> Column and row of the cell

@@ -41,7 +41,6 @@ module cohesive_interfaces
     real(wp), allocatable :: tangents(:, :, :)
   contains
     procedure :: add_forces
-    !> Consistent tangents of the forces.
     procedure :: tangents_at
     procedure :: dissipation
     procedure :: add_dissipation_slopes
@@ -52,7 +51,6 @@ module cohesive_interfaces
     procedure :: dissipated_fractions
     procedure :: shear_share
     procedure :: pressure
-    !> True for zones in which damage has reached the border.
     procedure :: border_reached
     procedure :: surfaces_of
     procedure :: law_at
@@ -121,7 +119,8 @@ contains
     end do
   end subroutine add_forces
 
-  !> Derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows in a mixed mode.
+  !> Consistent tangents: derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows
+  !> in a mixed mode.
   pure function tangents_at(self, plate, old, displacement) result(tangents)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
