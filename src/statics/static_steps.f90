@@ -29,7 +29,6 @@ module static_steps
     procedure :: residual_norm
     procedure :: may_stop
     procedure :: find_correction
-    !> Completes a correction at the load before: impactor, or change of the load.
     procedure :: complete_correction
     procedure :: correction_factor
     procedure :: complete
@@ -221,30 +220,19 @@ contains
       new%ledger%ply_damage = old%ledger%ply_damage + damage
       new%ledger%delamination = old%ledger%delamination + fracture
       excess = sums(1) - old%ledger%strain - sums(2)
-      if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
-        call correct_work(excess, sums(6), new%ledger%external_work)
+      ! Without dissipation the strain energy is the work of the loads along the equilibrium path, theory (E3), which
+      ! the trapezoidal rule over a step approximates. For a monotonic load the work lies between the products of
+      ! displacement increment and load before and after the step. Outside these bounds the plate has jumped to another
+      ! equilibrium, and the energy that would become kinetic is recorded as dissipated by the load step.
+      if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0 &
+          .and. .not. abs(excess) > abs(sums(6))) then
+        new%ledger%external_work = new%ledger%external_work + excess
+        excess = 0
+      end if
       new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
       call new%ledger%note_largest()
     end associate
   end subroutine finish
-
-  !> Without dissipation the strain energy is the work of the loads along the equilibrium path, theory (E3), which the
-  !> trapezoidal rule over a step approximates. For a monotonic load the work lies between the products of displacement
-  !> increment and load before and after the step. Outside these bounds the plate has jumped to another equilibrium, and
-  !> the energy that would become kinetic is recorded as dissipated by the load step.
-  pure subroutine correct_work(excess, margin, work)
-    !> Change of the strain energy less the work by the trapezoidal rule; on return the part outside the bounds of the
-    !> work
-    real(wp), intent(inout) :: excess
-    !> Half the product of the changes of load and displacement
-    real(wp), intent(in) :: margin
-    !> Work of the loads by the trapezoidal rule; receives its error
-    real(wp), intent(inout) :: work
-
-    if (abs(excess) > abs(margin)) return
-    work = work + excess
-    excess = 0
-  end subroutine correct_work
 
   !> Loads of an accepted state without the impactor's force. Before the first step only prescribed lines act.
   subroutine loads_carried(model, state, loads)
