@@ -25,7 +25,6 @@ contains
   pure function stacked_plies(laminate, materials) result(plies)
     !> Stacking sequence
     type(laminate_t), intent(in) :: laminate
-    !> Materials that it refers to
     type(material_t), intent(in) :: materials(:)
     !> The plies with their positions
     type(ply_t), allocatable :: plies(:)
@@ -50,7 +49,6 @@ contains
   pure function section_of(plies, shear_correction) result(section)
     !> Neighbouring plies: all of the laminate or those of one layer
     type(ply_t), intent(in) :: plies(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Their stiffness and mass
     type(section_t) :: section
@@ -65,7 +63,6 @@ contains
     type(ply_t), intent(in) :: plies(:)
     !> Present elastic constants of these plies
     type(elasticity_t), intent(in) :: elasticity(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)
@@ -98,7 +95,6 @@ contains
     type(elasticity_t), intent(in) :: elasticity(:)
     !> First and last ply of the layer
     integer, intent(in) :: first, last
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)

@@ -112,7 +112,6 @@ contains
   !> Tries a step. If it has not converged, `new` is undefined on return.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     class(step_problem_t), intent(inout) :: problem
-    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator; factorized again if convergence requires it

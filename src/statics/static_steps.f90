@@ -54,7 +54,6 @@ contains
   !> Predictor: the previous state.
   subroutine begin(self, at)
     class(static_step_t), intent(inout) :: self
-    !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
 
     associate (new => at%new)
@@ -66,7 +65,6 @@ contains
   !> Load less internal forces.
   subroutine find_residual(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
@@ -80,7 +78,6 @@ contains
   !> Residual relative to internal forces and load.
   real(wp) function residual_norm(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
     real(wp), allocatable :: loads(:, :)
     real(wp) :: references(2, 2)
@@ -178,7 +175,6 @@ contains
   !> Completes an accepted load step.
   subroutine finish(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration; its state is completed
     type(newton_iteration_t), intent(inout) :: at
     real(wp) :: sums(6), contact, fracture, heat, damage, excess
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
