@@ -48,7 +48,6 @@ module exact_sums
     !> Adds terms.
     generic :: add => add_value, add_values, add_table
     procedure, private :: add_value, add_values, add_table
-    !> Propagates carries, so that sums over up to 2^31 parts can be added number by number.
     procedure :: carry
     procedure :: rounded
   end type exact_sum_t
@@ -68,7 +67,8 @@ contains
     exponent = int(iand(shiftr(bits, fraction_bits), int(not_finite, long)))
     fraction = iand(bits, fraction_mask)
     if (exponent == not_finite) then
-      call count_special(self, fraction /= 0, bits < 0)
+      place = places + merge(3, merge(2, 1, bits < 0), fraction /= 0)
+      self%chunks(place) = self%chunks(place) + 1
       return
     end if
     if (exponent > 0) then
@@ -154,18 +154,8 @@ contains
     end do
   end subroutine add_block
 
-  !> Counts a term that is not finite.
-  pure subroutine count_special(self, is_nan, is_negative)
-    type(exact_sum_t), intent(inout) :: self
-    !> Whether it is no number, and its sign
-    logical, intent(in) :: is_nan, is_negative
-    integer :: place
-
-    place = places + merge(3, merge(2, 1, is_negative), is_nan)
-    self%chunks(place) = self%chunks(place) + 1
-  end subroutine count_special
-
-  !> Propagates carries: all places but the highest are then from 0 to 2^32 - 1, and that one has the sign.
+  !> Propagates carries: all places but the highest are then from 0 to 2^32 - 1, and that one has the sign. Sums over up
+  !> to 2^31 parts can then be added number by number.
   pure subroutine carry(self)
     class(exact_sum_t), intent(inout) :: self
     integer :: place

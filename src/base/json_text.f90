@@ -18,7 +18,6 @@ module json_text
     logical, private :: at_first = .true.
   contains
     procedure :: begin
-    !> Opens an object or a list; within a list without a name.
     procedure :: open_object
     procedure :: open_list
     procedure :: close => close_bracket
@@ -40,7 +39,7 @@ contains
     self%at_first = .true.
   end subroutine begin
 
-  !> Opens an object.
+  !> Opens an object; within a list without a name.
   pure subroutine open_object(self, name)
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list

@@ -274,22 +274,12 @@ contains
     do j = 1, len(b)
       do i = 1, len(a)
         table(i, j) = min(table(i - 1, j) + 1, table(i, j - 1) + 1, table(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
-        if (swapped(a, i, b, j)) table(i, j) = min(table(i, j), table(max(i - 2, 0), max(j - 2, 0)) + 1)
+        if (i == 1 .or. j == 1) cycle
+        if (a(i - 1:i) == b(j:j)//b(j - 1:j - 1)) table(i, j) = min(table(i, j), table(i - 2, j - 2) + 1)
       end do
     end do
     distance = table(len(a), len(b))
   end function edit_distance
-
-  !> True: the characters up to i of one word are the two up to j of the other in reverse.
-  pure logical function swapped(a, i, b, j)
-    !> The words
-    character(len=*), intent(in) :: a, b
-    !> Places in the words
-    integer, intent(in) :: i, j
-
-    swapped = .false.
-    if (i > 1 .and. j > 1) swapped = a(i - 1:i) == b(j:j)//b(j - 1:j - 1)
-  end function swapped
 
   !> The known name most similar to a misspelt one, or an empty text if none is similar.
   pure function nearest_name(name, known) result(nearest)

@@ -113,7 +113,8 @@ contains
 
     slopes = traction_slopes(self%law, jumps, separation_of(self%law, jumps), old)
     if (jumps(3) < 0) slopes(3, 3) = closing_stiffness(self, old)
-    if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
+    if (self%friction > 0) &
+      slopes(:2, :2) = slopes(:2, :2) + friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
   end function slopes
 
   !> Diagonal for a factored operator, constant within a class of points.
@@ -128,7 +129,7 @@ contains
     diagonal = operator_stiffness(self%law, jumps, old)
     if (jumps(3) < 0) diagonal(3) = closing_stiffness(self, old)
     if (.not. self%friction > 0) return
-    slopes = sticking(self, jumps, old)
+    slopes = friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
     diagonal(:2) = diagonal(:2) + [slopes(1, 1), slopes(2, 2)]
   end function diagonal
 
@@ -141,19 +142,9 @@ contains
     type(cohesive_point_t), intent(in) :: point
 
     limit = 0
-    if (is_in_contact(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_closing*jumps(3)
+    if (self%closing .and. jumps(3) < 0) &
+      limit = -self%friction*point%damage*self%law%stiffness_closing*jumps(3)
   end function friction_limit
-
-  !> Derivatives of the friction traction.
-  pure function sticking(self, jumps, old) result(slopes)
-    type(cohesive_surfaces_t), intent(in) :: self
-    real(wp), intent(in) :: jumps(3)
-    type(cohesive_point_t), intent(in) :: old
-    !> Force per area and tangential jump
-    real(wp) :: slopes(2, 2)
-
-    slopes = friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
-  end function sticking
 
   !> Stiffness of closing surfaces: that of the undamaged interface with contact, that of its undamaged part without.
   pure real(wp) function closing_stiffness(self, point) result(stiffness)
@@ -164,12 +155,4 @@ contains
     stiffness = self%law%stiffness_closing
     if (.not. self%closing) stiffness = (1 - point%damage)*stiffness
   end function closing_stiffness
-
-  !> True if the surfaces are under contact pressure.
-  pure logical function is_in_contact(self, jumps)
-    class(cohesive_surfaces_t), intent(in) :: self
-    real(wp), intent(in) :: jumps(3)
-
-    is_in_contact = self%closing .and. jumps(3) < 0
-  end function is_in_contact
 end module cohesive_surfaces

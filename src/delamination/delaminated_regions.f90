@@ -17,9 +17,7 @@ module delaminated_regions
     !> True where the interface is delaminated, (columns(1):columns(2), rows(1):rows(2))
     logical, allocatable :: delaminated(:, :)
   contains
-    !> True for a cell of the zone; false also for a cell outside the model.
     procedure :: in_zone
-    !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
     procedure :: released
     procedure :: release
@@ -44,13 +42,20 @@ contains
     type(delaminated_region_t) :: self
     type(cell_line_t) :: line
     real(wp) :: centre(2)
-    integer :: columns(2), rows(2)
+    integer :: columns(2), rows(2), column
 
     self%cells = mesh%cells
     self%columns = mesh%zones(zone)%columns
     self%rows = mesh%zones(zone)%rows
     allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
-    if (present(strip)) call delaminate_strip(self, mesh%along(1)%from(mesh%struck(1)), strip)
+    if (present(strip)) then
+      line = mesh%along(1)%from(mesh%struck(1))
+      associate (x => line%middles())
+        do column = self%columns(1), self%columns(2)
+          if (x(column) > strip(1) .and. x(column) < strip(2)) self%delaminated(column, :) = .true.
+        end do
+      end associate
+    end if
     if (.not. starter > 0) return
     centre = mesh%struck
     if (present(at)) centre = centre + at
@@ -97,23 +102,7 @@ contains
     end function touches
   end subroutine keep_circle
 
-  !> Delaminates the cells of a zone with the centre in a strip across it.
-  pure subroutine delaminate_strip(self, line, strip)
-    type(delaminated_region_t), intent(inout) :: self
-    !> All columns of cells, from the struck point
-    type(cell_line_t), intent(in) :: line
-    !> First and last x
-    real(wp), intent(in) :: strip(2)
-    real(wp) :: middles(line%cells())
-    integer :: column
-
-    middles = line%middles()
-    do column = self%columns(1), self%columns(2)
-      if (middles(column) > strip(1) .and. middles(column) < strip(2)) self%delaminated(column, :) = .true.
-    end do
-  end subroutine delaminate_strip
-
-  !> True for a cell of the zone.
+  !> True for a cell of the zone; false also for a cell outside the model.
   pure logical function in_zone(self, column, row)
     class(delaminated_region_t), intent(in) :: self
     !> Column and row of the cell
@@ -122,7 +111,7 @@ contains
               row >= self%rows(1) .and. row <= self%rows(2)
   end function in_zone
 
-  !> True for a delaminated cell.
+  !> True for a delaminated cell; false also outside the zone.
   pure logical function is_delaminated(self, column, row)
     class(delaminated_region_t), intent(in) :: self
     !> Column and row of the cell

@@ -199,7 +199,8 @@ contains
     end associate
   end subroutine fill_delamination
 
-  !> The law of one interface, cohesive unless a starter is given, and its strengths.
+  !> The law of one interface, by default cohesive if no key of a front is given and the strengths are known, and its
+  !> strengths.
   subroutine fill_law(settings, place, plies, weaker, delamination)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
@@ -210,9 +211,10 @@ contains
     type(delamination_t), intent(inout) :: delamination
     logical :: is_cohesive
 
-    is_cohesive = suits_cohesive(settings, place, weaker)
     ! Without plies, as their group has errors, only the key of a front decides.
-    if (plies == 0) is_cohesive = .not. needs_front(settings, place)
+    is_cohesive = .not. needs_front(settings, place) .and. (plies == 0 .or. &
+                  (weaker(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
+                  (weaker(2) > 0 .or. settings%is_given(group, key_strength_shear, place)))
     is_cohesive = is_cohesive .or. delamination%bonds_doublers()
     if (.not. settings%is_given(group, key_law, place)) call settings%derive(group, key_law, &
       trim(merge('cohesive', 'front   ', is_cohesive)), .true., place)
@@ -223,18 +225,6 @@ contains
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
     call fill_strength(settings, place, key_strength_shear, weaker(2), delamination%strength_shear)
   end subroutine fill_law
-
-  !> True if a cohesive law is the default: no key of a front is given, and the strengths are known.
-  pure logical function suits_cohesive(settings, place, of_plies) result(suits)
-    type(settings_t), intent(in) :: settings
-    integer, intent(in) :: place
-    !> Strengths YT and S12 of the weaker ply; 0: not given
-    real(wp), intent(in) :: of_plies(2)
-
-    suits = .not. needs_front(settings, place) .and. &
-            (of_plies(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
-            (of_plies(2) > 0 .or. settings%is_given(group, key_strength_shear, place))
-  end function suits_cohesive
 
   !> True if the deck gives a key that only a front has.
   pure logical function needs_front(settings, place)

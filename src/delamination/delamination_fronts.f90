@@ -34,22 +34,18 @@ contains
     type(delaminated_region_t), intent(in) :: region
     type(layered_mesh_t), intent(in) :: mesh
     type(front_segment_t), allocatable :: segments(:)
-    integer :: pass, found, column, row, side, inside(2)
+    integer :: column, row, side, inside(2)
 
-    do pass = 1, 2
-      found = 0
-      do row = max(1, region%rows(1) - 1), min(region%cells(2), region%rows(2) + 1)
-        do column = max(1, region%columns(1) - 1), min(region%cells(1), region%columns(2) + 1)
-          if (region%is_delaminated(column, row)) cycle
-          do side = 1, size(neighbours, 2)
-            inside = [column, row] - neighbours(:, side)
-            if (.not. region%is_delaminated(inside(1), inside(2))) cycle
-            found = found + 1
-            if (pass == 2) segments(found) = segment_between(region, mesh, inside, neighbours(:, side))
-          end do
+    allocate (segments(0))
+    do row = max(1, region%rows(1) - 1), min(region%cells(2), region%rows(2) + 1)
+      do column = max(1, region%columns(1) - 1), min(region%cells(1), region%columns(2) + 1)
+        if (region%is_delaminated(column, row)) cycle
+        do side = 1, size(neighbours, 2)
+          inside = [column, row] - neighbours(:, side)
+          if (region%is_delaminated(inside(1), inside(2))) &
+            segments = [segments, segment_between(region, mesh, inside, neighbours(:, side))]
         end do
       end do
-      if (pass == 1) allocate (segments(found))
     end do
   end function find_front
 

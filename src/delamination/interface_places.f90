@@ -44,18 +44,10 @@ contains
     integer, allocatable :: below(:)
 
     below = settings%integers_of(group, key_below_ply, place)
-    if (names_all(settings, place)) below = between
+    if (any(lower_case(settings%text_of(group, key_below_ply, place)) == &
+            [character(len=14) :: 'all', 'between_angles'])) below = between
     if (size(below) == 0) below = [0]
   end function plies_above
-
-  !> True if the interfaces are selected by a word.
-  pure logical function names_all(settings, place)
-    type(settings_t), intent(in) :: settings
-    integer, intent(in) :: place
-
-    names_all = any(lower_case(settings%text_of(group, key_below_ply, place)) == &
-                       [character(len=14) :: 'all', 'between_angles'])
-  end function names_all
 
   !> Reports the interfaces that `all` leaves out, between plies of one angle.
   subroutine remark_left_out(settings, plies, between, problems)

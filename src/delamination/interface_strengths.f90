@@ -17,7 +17,6 @@ contains
     type(ply_t), intent(in) :: plies(:)
     !> Their numbers among those of the plate
     integer, intent(in) :: number(:)
-    !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
     !> Interfaces that may delaminate; not allocated: none
     type(delamination_t), allocatable, intent(in) :: delaminations(:)

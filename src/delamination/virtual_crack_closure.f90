@@ -47,7 +47,7 @@ contains
     rate = 0
     do layer = 1, size(stiffness, 2)
       jump = delaminated(:, layer) - intact(:, layer)
-      rate = rate + strain_energy(stiffness(:, layer), jump)
+      rate = rate + dot_product(jump, matmul(full_stiffness(stiffness(:, layer)), jump))/2
     end do
   end function two_state_release
 
@@ -94,16 +94,6 @@ contains
     full(7, 7:8) = packed(19:20)
     full(8, 7:8) = packed(20:21)
   end function full_stiffness
-
-  !> Elastic energy per area of generalised strains.
-  pure real(wp) function strain_energy(stiffness, strains) result(energy)
-    !> Section stiffness
-    real(wp), intent(in) :: stiffness(21)
-    !> Membrane strains, curvatures, transverse shear strains
-    real(wp), intent(in) :: strains(8)
-
-    energy = dot_product(strains, matmul(full_stiffness(stiffness), strains))/2
-  end function strain_energy
 
   !> Energy release rate of a segment from those of its three nodes (step 3 of section 3.3.3).
   pure real(wp) function segment_mean(rates) result(mean)

@@ -65,7 +65,6 @@ contains
   !> jumps keep their values.
   subroutine begin(self, at)
     class(dynamic_step_t), intent(inout) :: self
-    !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
@@ -113,7 +112,6 @@ contains
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
   subroutine find_residual(self, at)
     class(dynamic_step_t), intent(in) :: self
-    !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
     real(wp), allocatable :: lines(:, :), lines_before(:, :)
     real(wp) :: amplitude
@@ -187,7 +185,6 @@ contains
   !> Residual relative to internal, inertia and contact forces.
   real(wp) function residual_norm(self, at)
     class(dynamic_step_t), intent(in) :: self
-    !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
     real(wp) :: references(2, 3)
 
@@ -244,7 +241,6 @@ contains
   !> Finds the impactor's force for a displacement.
   subroutine find_force(self, at)
     class(dynamic_step_t), intent(inout) :: self
-    !> The iteration, the displacement of its state known
     type(newton_iteration_t), intent(inout) :: at
     type(error_t), allocatable :: error
     integer :: iterations
@@ -272,7 +268,6 @@ contains
   !> Completes an accepted step: impactor, indentation and ledger.
   subroutine finish(self, at)
     class(dynamic_step_t), intent(in) :: self
-    !> The iteration; its state is completed
     type(newton_iteration_t), intent(inout) :: at
     real(wp) :: work
 

@@ -2,6 +2,7 @@
 !> integrators, not as the remainder, so that the energy error shows every other error.
 module energy_balance
   use cohesive_energies, only: stored_beyond_work
+  use cohesive_sliding, only: heat_since
   use kinds, only: wp
   use impactors, only: impactor_energy
   use motions, only: motion_t
@@ -63,7 +64,7 @@ contains
     new%ledger%ply_damage = new%ledger%ply_damage + damage
     fracture = new%interfaces%cohesive%dissipation(model%plate, old%interfaces%cohesive)
     new%ledger%delamination = new%ledger%delamination + fracture
-    heat = new%interfaces%friction_heat(model%plate, old%interfaces)
+    heat = heat_since(model%plate, old%interfaces%cohesive, new%interfaces%cohesive)
     new%ledger%friction = new%ledger%friction + heat
     new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
     call new%plies%measure_lag(damage, products%strain - old%ledger%strain - products%mean_internal &

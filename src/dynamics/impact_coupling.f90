@@ -29,7 +29,6 @@ module impact_coupling
   contains
     procedure :: load
     procedure :: forces_agree
-    !> Solves for the force, and adds the unit-load solution of the plate times its change.
     procedure :: solve
     procedure :: find_force
     procedure :: slope

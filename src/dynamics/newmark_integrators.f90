@@ -16,7 +16,6 @@ module newmark_integrators
     real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
   contains
     procedure :: complete
-    !> Factor of the mass in the operator that maps a residual to a correction of the displacement.
     procedure :: mass_factor
     procedure :: stiffness_factor
   end type plate_integrator_t
@@ -85,7 +84,7 @@ contains
     end do
   end subroutine complete_all
 
-  !> Factor of the mass in the effective operator, 1/time**2.
+  !> Factor of the mass, 1/time**2, in the operator that maps a residual to a correction of the displacement.
   elemental real(wp) function mass_factor(self, step) result(factor)
     class(plate_integrator_t), intent(in) :: self
     real(wp), intent(in) :: step

@@ -45,13 +45,11 @@ contains
   end subroutine gear4_weights
 
   !> Weight of the derivative in the next gear4 step.
-  pure function gear4_slope(impactor, dt) result(slope)
+  pure real(wp) function gear4_slope(impactor, dt) result(slope)
     !> State at the start of the step
     type(impactor_t), intent(in) :: impactor
     !> Step
     real(wp), intent(in) :: dt
-    !> Weight
-    real(wp) :: slope
     real(wp) :: weights(past + 1), steps(past)
 
     steps = dt

@@ -46,8 +46,9 @@ contains
     end if
   end function relative_radius
 
-  !> Contact stiffness k of a sphere on a plate, (4/3) sqrt(R) / ((1 - nu**2)/E + c) (Sun and Yang).
-  pure function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
+  !> Contact stiffness k of a sphere on a plate, force per length**1.5: (4/3) sqrt(R) / ((1 - nu**2)/E + c) (Sun and
+  !> Yang).
+  pure real(wp) function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
     !> Radius of the nose, or of its relative curvature on a curved face
     real(wp), intent(in) :: radius
     !> Compliance c of the struck ply: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
@@ -56,8 +57,6 @@ contains
     real(wp), intent(in), optional :: impactor_e
     !> Poisson's ratio of the impactor; absent: 0
     real(wp), intent(in), optional :: impactor_nu
-    !> Contact stiffness, force per length**1.5
-    real(wp) :: k
     real(wp) :: compliance, nu
 
     compliance = struck_compliance
@@ -69,15 +68,13 @@ contains
 
   !> Mean of x**exponent over an interval of positive numbers. Short intervals are summed as a
   !> binomial series about the middle, since the difference of powers would cancel.
-  pure function mean_power(lower, upper, exponent) result(mean)
+  pure real(wp) function mean_power(lower, upper, exponent) result(mean)
     !> Start of the interval, at least 0
     real(wp), intent(in) :: lower
     !> End of the interval, larger than `lower` or equal
     real(wp), intent(in) :: upper
     !> Exponent
     real(wp), intent(in) :: exponent
-    !> Mean
-    real(wp) :: mean
     real(wp) :: middle, ratio, term, total
     integer :: order
 

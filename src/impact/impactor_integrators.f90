@@ -95,7 +95,7 @@ contains
 
   !> Largest step for which omega*step is below the limit of the impactor's integrator at every indentation that the
   !> step may reach.
-  pure function largest_safe_step(parameters, law, state, alpha, approach) result(step)
+  pure real(wp) function largest_safe_step(parameters, law, state, alpha, approach) result(step)
     !> Mass, integrator
     type(impactor_parameters_t), intent(in) :: parameters
     type(indentation_law_t), intent(in) :: law
@@ -104,8 +104,6 @@ contains
     real(wp), intent(in) :: alpha
     !> Rate of indentation at the start of the step, positive: closing
     real(wp), intent(in) :: approach
-    !> Step
-    real(wp) :: step
     real(wp) :: limit, rate, depth
 
     step = huge(step)

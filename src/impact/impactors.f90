@@ -42,14 +42,12 @@ contains
     impactor%velocity = parameters%velocity
   end function new_impactor
 
-  !> Kinetic energy and potential of gravity.
-  pure function impactor_energy(parameters, impactor) result(energy)
+  !> Kinetic energy and potential of gravity; the latter is 0 at zero displacement.
+  pure real(wp) function impactor_energy(parameters, impactor) result(energy)
     !> Mass, gravity
     type(impactor_parameters_t), intent(in) :: parameters
     !> State
     type(impactor_t), intent(in) :: impactor
-    !> Energy; the potential is 0 at zero displacement
-    real(wp) :: energy
 
     energy = parameters%mass*(0.5_wp*impactor%velocity**2 - parameters%gravity*impactor%displacement)
   end function impactor_energy

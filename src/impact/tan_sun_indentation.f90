@@ -52,26 +52,22 @@ module tan_sun_indentation
 
 contains
 
-  !> Indentation below which the contact force is zero.
-  pure function zero_force_indentation(law, state) result(zero_force)
+  !> Indentation below which the contact force is zero: the dent, or 0.
+  pure real(wp) function zero_force_indentation(law, state) result(zero_force)
     type(indentation_law_t), intent(in) :: law
     type(indentation_t), intent(in) :: state
-    !> The dent, or 0
-    real(wp) :: zero_force
     type(branch_t) :: branch
 
     branch = current_branch(law, state)
     zero_force = branch%start
   end function zero_force_indentation
 
-  !> Contact force.
-  pure function indentation_force(law, state, alpha) result(force)
+  !> Contact force, zero or positive.
+  pure real(wp) function indentation_force(law, state, alpha) result(force)
     type(indentation_law_t), intent(in) :: law
     type(indentation_t), intent(in) :: state
     !> Indentation, reached monotonically from the committed one
     real(wp), intent(in) :: alpha
-    !> Force, zero or positive
-    real(wp) :: force
     type(branch_t) :: branch
 
     branch = current_branch(law, state)
@@ -103,12 +99,10 @@ contains
   end function indentation_of
 
   !> Derivative of the contact force; at the largest indentation that of the branch below it.
-  pure function indentation_stiffness(law, state, alpha) result(stiffness)
+  pure real(wp) function indentation_stiffness(law, state, alpha) result(stiffness)
     type(indentation_law_t), intent(in) :: law
     type(indentation_t), intent(in) :: state
     real(wp), intent(in) :: alpha
-    !> Force per length, zero or positive
-    real(wp) :: stiffness
     type(branch_t) :: branch
 
     branch = current_branch(law, state)
@@ -123,15 +117,13 @@ contains
   end function indentation_stiffness
 
   !> Mean of the contact force between two indentations, without cancellation; the force if they are equal.
-  pure function mean_indentation_force(law, state, alpha_from, alpha_to) result(mean)
+  pure real(wp) function mean_indentation_force(law, state, alpha_from, alpha_to) result(mean)
     type(indentation_law_t), intent(in) :: law
     type(indentation_t), intent(in) :: state
     !> Indentation at one end of the path
     real(wp), intent(in) :: alpha_from
     !> Indentation at the other end
     real(wp), intent(in) :: alpha_to
-    !> Mean force
-    real(wp) :: mean
     type(branch_t) :: branch
     real(wp) :: least, most, lower, upper
 
@@ -151,26 +143,23 @@ contains
     if (most > lower) mean = mean + mean_loading_force(law, lower, most)*(most - lower)/(most - least)
   end function mean_indentation_force
 
-  !> Work of the contact force along a monotonic path.
-  pure function indentation_work(law, state, alpha_from, alpha_to) result(work)
+  !> Work of the contact force along a monotonic path: the exact integral of the force over the indentation.
+  pure real(wp) function indentation_work(law, state, alpha_from, alpha_to) result(work)
     type(indentation_law_t), intent(in) :: law
     type(indentation_t), intent(in) :: state
     !> Indentation at the start of the path
     real(wp), intent(in) :: alpha_from
     !> Indentation at its end
     real(wp), intent(in) :: alpha_to
-    !> Integral of the force over the indentation, exact
-    real(wp) :: work
 
     work = mean_indentation_force(law, state, alpha_from, alpha_to)*(alpha_to - alpha_from)
   end function indentation_work
 
-  !> Upper bound of the ratio of the present contact stiffness to that of Hertz at the same indentation.
-  pure function stiffening(law, state) result(ratio)
+  !> Upper bound of the ratio of the present contact stiffness to that of Hertz at the same indentation, at least 1. The
+  !> steepest point is the upper end of the unloading or reloading curve.
+  pure real(wp) function stiffening(law, state) result(ratio)
     type(indentation_law_t), intent(in) :: law
     type(indentation_t), intent(in) :: state
-    !> At least 1; the steepest point is the upper end of the unloading or reloading curve
-    real(wp) :: ratio
     type(branch_t) :: branch
 
     branch = current_branch(law, state)
@@ -237,25 +226,21 @@ contains
   end function current_branch
 
   !> Position on a curve, 0 at its start and 1 at its end.
-  pure function position(branch, alpha) result(s)
+  pure real(wp) function position(branch, alpha) result(s)
     !> The curve
     type(branch_t), intent(in) :: branch
     !> Indentation on it
     real(wp), intent(in) :: alpha
-    !> Place
-    real(wp) :: s
 
     s = (alpha - branch%start)/(branch%finish - branch%start)
   end function position
 
   !> Permanent dent after unloading from an indentation, theory (F6) and (F7) (Tan and Sun 1985; Yang and Sun 1982;
   !> Thornton 1997, with the larger radius of the deformed face in unloading).
-  pure function permanent_dent(law, alpha_max) result(dent)
+  pure real(wp) function permanent_dent(law, alpha_max) result(dent)
     type(indentation_law_t), intent(in) :: law
     !> Largest indentation
     real(wp), intent(in) :: alpha_max
-    !> Dent
-    real(wp) :: dent
 
     dent = 0
     if (law%law == law_hertz .or. alpha_max <= law%alpha_critical) return

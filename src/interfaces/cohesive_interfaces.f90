@@ -41,7 +41,6 @@ module cohesive_interfaces
     real(wp), allocatable :: tangents(:, :, :)
   contains
     procedure :: add_forces
-    !> Consistent tangents of the forces.
     procedure :: tangents_at
     procedure :: dissipation
     procedure :: add_dissipation_slopes
@@ -52,7 +51,6 @@ module cohesive_interfaces
     procedure :: dissipated_fractions
     procedure :: shear_share
     procedure :: pressure
-    !> True for zones in which damage has reached the border.
     procedure :: border_reached
     procedure :: surfaces_of
     procedure :: law_at
@@ -100,7 +98,7 @@ contains
     type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: start
     real(wp) :: traction(3)
-    integer :: i
+    integer :: i, k
 
     if (.not. allocated(self%cohesive)) return
     do i = 1, plate%distribution%owned
@@ -112,13 +110,17 @@ contains
         call surfaces%traction(jumps, start, traction, self%points(i))
         self%stiffness(:, i) = area*surfaces%diagonal(jumps, start)
         energy = energy + area*surfaces%stored(jumps, self%points(i))
-        if (allocated(self%tangents)) call store_tangent(self, i, area*surfaces%slopes(jumps, start))
+        if (allocated(self%tangents)) then
+          self%tangents(:, :, i) = area*surfaces%slopes(jumps, start)
+          self%stiffness(:, i) = [(self%tangents(k, k, i), k=1, 3)]
+        end if
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
   end subroutine add_forces
 
-  !> Derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows in a mixed mode.
+  !> Consistent tangents: derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows
+  !> in a mixed mode.
   pure function tangents_at(self, plate, old, displacement) result(tangents)
     class(cohesive_interfaces_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
@@ -140,18 +142,6 @@ contains
       tangents(:, :, i) = plate%interfaces%contact_area(i)*surfaces%slopes(displacement(1:3, i), start)
     end do
   end function tangents_at
-
-  !> Stores a consistent tangent and its diagonal for the operator.
-  pure subroutine store_tangent(self, i, tangent)
-    class(cohesive_interfaces_t), intent(inout) :: self
-    integer, intent(in) :: i
-    !> Force per jump
-    real(wp), intent(in) :: tangent(3, 3)
-    integer :: k
-
-    self%tangents(:, :, i) = tangent
-    self%stiffness(:, i) = [(tangent(k, k), k=1, 3)]
-  end subroutine store_tangent
 
   !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
   pure subroutine add_dissipation_slopes(self, plate, old, displacement, slopes)

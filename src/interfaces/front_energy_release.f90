@@ -94,40 +94,27 @@ contains
     !> Sums over nodes, (quantities, segments)
     real(wp), allocatable :: figures(:, :)
     type(near_front_t) :: nodes
-    real(wp), allocatable :: sums(:)
-    real(wp) :: weight
+    real(wp) :: weight, force(3)
     integer :: i, k
 
     allocate (figures(closure_figures, size(segments)), source=0.0_wp)
     nodes = line%nodes_near(segments, plate%mesh)
     do k = 1, size(nodes%node)
-      i = owned_lower_point(plate, zone, nodes%node(k))
-      if (i == 0) cycle
+      i = plate%mesh%lower_point(nodes%node(k), zone)
+      if (i > 0) i = plate%distribution%local(i)
+      if (i == 0 .or. i > plate%distribution%owned) cycle
       ! A node on a line of symmetry has half of its force, but the full jump.
       weight = product(merge(0.5_wp, 1.0_wp, plate%mesh%lines_of(nodes%node(k)) == 0 .and. plate%mesh%mirrored))
+      ! External less internal and inertia forces, without reactions of a line of symmetry or an edge of the plate.
+      force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
+      where (plate%constraints%fixed(1:3, plate%distribution%points(i))) force = 0
       associate (s => nodes%segment(k))
         figures(:, s) = figures(:, s) + nodes%share(k)*closure_moments(line%normal(:, s), nodes%distance(k), &
-          line%ahead(s), line%behind(s), .not. contact%free(i), weight, tie_force(plate, motion, i), &
-          motion%displacement(1:3, i))
+          line%ahead(s), line%behind(s), .not. contact%free(i), weight, force, motion%displacement(1:3, i))
       end associate
     end do
-    sums = reshape(figures, [size(figures)])
-    call plate%communicator%sum(sums)
-    figures = reshape(sums, shape(figures))
+    call plate%communicator%sum(figures)
   end function moments_of
-
-  !> Force that holds the jump at a point: external less internal and inertia forces.
-  pure function tie_force(plate, motion, i) result(force)
-    type(composite_plate_t), intent(in) :: plate
-    type(motion_t), intent(in) :: motion
-    !> Point below the interface, on the rank that owns it
-    integer, intent(in) :: i
-    !> Force, x, y, z; without reactions of a line of symmetry or an edge of the plate
-    real(wp) :: force(3)
-
-    force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
-    where (plate%constraints%fixed(1:3, plate%distribution%points(i))) force = 0
-  end function tie_force
 
   !> Distance along a front over which forces and jumps are averaged.
   pure real(wp) function front_reach(plate, zone) result(reach)
@@ -137,15 +124,4 @@ contains
     reach = plate%setup%delaminations(zone)%smoothing
     if (.not. reach > 0) reach = default_smoothing(plate%layup%thickness, plate%mesh%mean_cell(zone))
   end function front_reach
-
-  !> Index of a node's point below an interface on the rank that owns it; 0: on another rank or none.
-  pure integer function owned_lower_point(plate, zone, node) result(i)
-    type(composite_plate_t), intent(in) :: plate
-    integer, intent(in) :: zone
-    integer, intent(in) :: node
-
-    i = plate%mesh%lower_point(node, zone)
-    if (i > 0) i = plate%distribution%local(i)
-    if (i > plate%distribution%owned) i = 0
-  end function owned_lower_point
 end module front_energy_release

@@ -98,24 +98,14 @@ contains
         if (.not. enters(s)) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
-        energy = cell_energy(s)*plate%mesh%multiplicity
+        energy = critical_release_rate(plate%setup%delaminations(zone), front%modes(:, s)) &
+                 *plate%mesh%cell_area(segment%outside)*plate%mesh%multiplicity
         fracture = fracture + energy
         state%contact%fracture(zone) = state%contact%fracture(zone) + energy
         grown = .true.
         if (plate%setup%delaminations(zone)%growth == growth_one_per_step) return
       end associate
     end do
-
-  contains
-
-    !> Energy that the toughness of the cell ahead of a segment requires.
-    pure real(wp) function cell_energy(s)
-      !> Segment
-      integer, intent(in) :: s
-
-      cell_energy = critical_release_rate(plate%setup%delaminations(zone), front%modes(:, s)) &
-                    *plate%mesh%cell_area(front%segments(s)%outside)
-    end function cell_energy
   end subroutine release_cells
 
   !> Of the candidate cells within the averaging length, those whose centre is closest to the front: a rate averaged

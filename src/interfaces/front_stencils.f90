@@ -40,7 +40,8 @@ contains
     type(front_stencils_t) :: self
     integer, allocatable :: groups(:, :)
     logical, allocatable :: mine(:)
-    integer :: i
+    integer :: i, near(3, 4), images(3, 4)
+    real(wp) :: widths(2, 4)
 
     associate (mesh => plate%mesh, parts => plate%distribution)
       self%points = pack([(i, i=1, parts%owned)], plate%zone(:parts%owned) > 0)
@@ -54,27 +55,15 @@ contains
       allocate (groups(13, mesh%points()))
       allocate (mine(mesh%points()), source=.false.)
       mine(parts%points(:parts%owned)) = .true.
+      ! A point and those of its stencil, each of which has the point in its own stencil.
       do i = 1, mesh%points()
-        groups(:, i) = group_of(mesh, i)
+        near = 0
+        if (mesh%point_zone(i) > 0) call find_stencil(mesh, i, near, images, widths)
+        groups(:, i) = [i, reshape(near, [12])]
       end do
       self%exchange = new_column_exchange(plate%communicator, mine, groups)
     end associate
   end function create_front_stencils
-
-  !> A point and the points of its stencil. Each of these has the point in its own stencil.
-  pure function group_of(mesh, point) result(group)
-    type(layered_mesh_t), intent(in) :: mesh
-    !> Point of the mesh
-    integer, intent(in) :: point
-    !> Points, padded with zeros
-    integer :: group(13)
-    integer :: near(3, 4), images(3, 4)
-    real(wp) :: widths(2, 4)
-
-    near = 0
-    if (mesh%point_zone(point) > 0) call find_stencil(mesh, point, near, images, widths)
-    group = [point, reshape(near, [12])]
-  end function group_of
 
   !> Stencil of a point in all directions of growth.
   pure subroutine find_stencil(mesh, point, near, images, widths)

@@ -58,9 +58,11 @@ contains
     if (output%requests(field_onset)) call write_onset(plate, stiffness, interfaces, motion, fields, error)
     if (.not. plate%map%layered) return
     associate (contact => interfaces%contact)
-      if (output%requests(field_gap)) call fields%write_point_field('jump', jumps(plate, motion%displacement), error)
+      if (output%requests(field_gap)) call fields%write_point_field('jump', merge(motion%displacement(1:3, :), 0.0_wp, &
+                                                                             spread(plate%zone > 0, 1, 3)), error)
       if (output%requests(field_contact_pressure)) &
-        call fields%write_point_field('contact_pressure', pressures(plate, interfaces, motion%displacement), error)
+        call fields%write_point_field('contact_pressure', reshape(contact%pressure + interfaces%cohesive%pressure( &
+          plate, motion%displacement), [1, size(plate%zone)]), error)
       if (output%requests(field_delamination)) then
         call fields%write_cell_field('delaminated_above', delaminated_above(plate, interfaces), error)
         call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(plate), &
@@ -117,16 +119,6 @@ contains
     call fields%write_cell_field('onset_ply', onset(2:2, :), error)
   end subroutine write_onset
 
-  !> Jumps at the interface above each point's layer.
-  pure function jumps(plate, displacement)
-    type(composite_plate_t), intent(in) :: plate
-    real(wp), intent(in) :: displacement(:, :)
-    !> Jumps of u, v and w, zero in the first layer, (3, points)
-    real(wp), allocatable :: jumps(:, :)
-
-    jumps = merge(displacement(1:3, :), 0.0_wp, spread(plate%zone > 0, 1, 3))
-  end function jumps
-
   !> 1 in elements whose interface above has delaminated.
   function delaminated_above(plate, interfaces) result(delaminated)
     type(composite_plate_t), intent(in) :: plate
@@ -182,18 +174,6 @@ contains
       end do
     end associate
   end function starters_above
-
-  !> Contact pressure at the interface above each point's layer.
-  pure function pressures(plate, interfaces, displacement)
-    type(composite_plate_t), intent(in) :: plate
-    type(interface_state_t), intent(in) :: interfaces
-    real(wp), intent(in) :: displacement(:, :)
-    !> Pressure, (1, points)
-    real(wp), allocatable :: pressures(:, :)
-
-    pressures = reshape(interfaces%contact%pressure + interfaces%cohesive%pressure(plate, displacement), &
-                        [1, size(plate%zone)])
-  end function pressures
 
   !> Ratio of energy release rate to its critical value in the intact cells ahead of the fronts, zero elsewhere. At the
   !> border of a zone it is given for the last delaminated cell.

@@ -1,6 +1,5 @@
 !> Results of an interface: stage of failure, delaminated area and extents, dissipated energy.
 module interface_figures
-  use cohesive_points, only: cohesive_point_t
   use delamination_parameters, only: law_cohesive
   use interface_states, only: interface_state_t
   use kinds, only: wp
@@ -70,21 +69,14 @@ contains
       do i = 1, plate%distribution%owned
         ! Starters are delaminated before the run.
         if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%contact%free(i)) cycle
-        furthest(plate%zone(i)) = max(furthest(plate%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
+        associate (stage => furthest(plate%zone(i)), damage => interfaces%cohesive%points(i)%damage)
+          if (damage > 0) stage = max(stage, real(merge(stage_grown, stage_damaged, damage >= 1), wp))
+        end associate
       end do
       call plate%communicator%maximum(furthest)
     end if
     stages = nint(furthest)
   end function stages_of
-
-  !> Stage of failure of a cohesive point.
-  pure integer function stage_of(point) result(stage)
-    type(cohesive_point_t), intent(in) :: point
-
-    stage = stage_intact
-    if (point%damage > 0) stage = stage_damaged
-    if (point%damage >= 1) stage = stage_grown
-  end function stage_of
 
   !> Largest -x, x, -y and y of the delamination in the modelled part: failed nodes of a cohesive law, entire cells
   !> where fronts release ties. Collective.

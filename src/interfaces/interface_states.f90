@@ -9,7 +9,7 @@ module interface_states
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
   use interface_flaws, only: visit_flaws
-  use cohesive_sliding, only: heat_since, update_friction_limits, visit_friction
+  use cohesive_sliding, only: update_friction_limits, visit_friction
   use tie_release, only: tie_release_t, new_tie_release
   use rig_contact, only: rig_contact_t, new_rig_contact
   implicit none
@@ -38,7 +38,6 @@ module interface_states
     procedure :: contact_work
     procedure :: unreleased
     procedure :: added_stiffness
-    procedure :: friction_heat
     procedure :: visit
   end type interface_state_t
 
@@ -111,16 +110,6 @@ contains
     work = self%rig%work(model, change)
     if (model%plate%map%layered) work = work + self%contact%work(model%plate, displacement, change)
   end function contact_work
-
-  !> Frictional heat since an earlier state, of the full plate, the same on every rank.
-  real(wp) function friction_heat(self, plate, old) result(heat)
-    class(interface_state_t), intent(in) :: self
-    type(composite_plate_t), intent(in) :: plate
-    !> The earlier state
-    class(interface_state_t), intent(in) :: old
-
-    heat = heat_since(plate, old%cohesive, self%cohesive)
-  end function friction_heat
 
   !> Energy recorded as fracture energy but not yet released by fronts in equilibrium, which is not an error of the
   !> integrator.

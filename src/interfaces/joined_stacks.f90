@@ -64,7 +64,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Qx, Qy; Qx,x Qx,y Qy,x Qy,y; delaminated fraction, (7, elements of the mesh)
     real(wp), allocatable :: everywhere(:, :)
-    real(wp), allocatable :: motion(:, :), list(:)
+    real(wp), allocatable :: motion(:, :)
     real(wp) :: strains(lanes, 9, 8)
     integer :: b, lane, i
 
@@ -81,9 +81,7 @@ contains
         end associate
       end do
     end do
-    list = reshape(everywhere, [size(everywhere)])
-    call plate%communicator%sum(list)
-    everywhere = reshape(list, shape(everywhere))
+    call plate%communicator%sum(everywhere)
   end function gathered
 
   !> Shear forces in the middle of an element and their derivatives.

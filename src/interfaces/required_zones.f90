@@ -77,7 +77,7 @@ contains
     real(wp), intent(inout) :: extents(2)
     type(cell_line_t) :: columns, rows
     real(wp) :: before(2), near(2)
-    integer :: cell
+    integer :: cell, place(2)
 
     columns = plate%mesh%along(1)%from(centre(1))
     rows = plate%mesh%along(2)%from(centre(2))
@@ -86,28 +86,14 @@ contains
       near = [columns%widened(extents(1), 1), rows%widened(extents(2), 1)]*(1 + rounding)
       do cell = 1, size(onset)
         if (onset(cell) < onset_of_layers) cycle
-        associate (reach => extents_to(plate, centre, cell))
+        place = plate%mesh%place_of(cell)
+        associate (reach => 2*[maxval(abs(columns%ends(place(1)))), maxval(abs(rows%ends(place(2))))])
           if (onset(cell) >= 1 .or. all(reach <= near)) extents = max(extents, reach)
         end associate
       end do
       if (.not. any(extents > before)) return
     end do
   end subroutine extend
-
-  !> Full extents that include a cell.
-  pure function extents_to(plate, centre, cell) result(extents)
-    type(composite_plate_t), intent(in) :: plate
-    !> Centre of the rectangle
-    real(wp), intent(in) :: centre(2)
-    integer, intent(in) :: cell
-    !> Along x and y
-    real(wp) :: extents(2)
-
-    associate (mesh => plate%mesh, place => plate%mesh%place_of(cell))
-      extents = 2*[maxval(abs(mesh%along(1)%ends(place(1)) - centre(1))), &
-                   maxval(abs(mesh%along(2)%ends(place(2)) - centre(2)))]
-    end associate
-  end function extents_to
 
   !> Centre of a layered rectangle.
   pure function centre_of(plate, zone) result(centre)

@@ -270,7 +270,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Compressive strength at the onset of kinking, which later loads do not change; 0: not yet
     real(wp), intent(inout) :: kinked
@@ -316,7 +315,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Stress along the fibres, negative
     real(wp), intent(in) :: along
@@ -341,7 +339,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)

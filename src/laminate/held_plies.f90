@@ -18,7 +18,6 @@ contains
   !> Modulus through the thickness of a laminate whose in-plane strains are held: layers in series.
   pure real(wp) function held_modulus(laminate, materials) result(modulus)
     type(laminate_t), intent(in) :: laminate
-    !> Materials that it refers to
     type(material_t), intent(in) :: materials(:)
     integer :: ply
 

@@ -24,7 +24,6 @@ contains
   pure function material_in_place(plies, ply, materials, damage) result(material)
     type(ply_t), intent(in) :: plies(:)
     integer, intent(in) :: ply
-    !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
     !> True: in-situ strengths
     type(ply_damage_t), intent(in) :: damage
@@ -44,7 +43,6 @@ contains
   pure function crack_strengths(plies, ply, materials, damage) result(strengths)
     type(ply_t), intent(in) :: plies(:)
     integer, intent(in) :: ply
-    !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
     !> True: in-situ strengths
     type(ply_damage_t), intent(in) :: damage

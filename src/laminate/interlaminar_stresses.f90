@@ -14,7 +14,6 @@ module interlaminar_stresses
     real(wp), allocatable :: shear(:, :, :), carried(:, :, :)
   contains
     procedure :: opening
-    !> Onset index of interfaces.
     procedure :: onset_indices
   end type unit_stresses_t
 
@@ -47,7 +46,7 @@ contains
     stress = min(gradient(1, 1) + gradient(2, 2), 0.0_wp) - sum(self%carried(:, :, ply)*gradient)
   end function opening
 
-  !> Stresses over strengths in each interface, sqrt((tau/S)**2 + (sigma/T)**2), pressure left out.
+  !> Onset index of each interface, stresses over strengths: sqrt((tau/S)**2 + (sigma/T)**2), pressure left out.
   pure function onset_indices(self, strengths, force, gradient) result(indices)
     class(unit_stresses_t), intent(in) :: self
     !> Strengths in shear and opening of the interface below each ply; 0: not known, and without a shear strength the

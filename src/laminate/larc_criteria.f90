@@ -212,7 +212,8 @@ contains
     real(wp), intent(in) :: along, across, shear
     real(wp) :: angle, c, s, normal, sliding
 
-    angle = misalignment(larc, along, across, shear)
+    ! The initial misalignment and the shear strain in its frame, for small angles.
+    angle = (abs(shear) + (larc%shear_modulus - larc%along)*larc%misalignment)/(larc%shear_modulus + along - across)
     c = cos(angle)
     s = sin(angle)
     normal = s*s*along + c*c*across - 2*s*c*abs(shear)
@@ -223,13 +224,4 @@ contains
       exposure = max(0.0_wp, sliding + larc%friction*normal)/larc%shear
     end if
   end function frame_exposure
-
-  !> Misalignment of the fibres under stresses: the initial one and the shear strain in its frame, for small angles.
-  pure real(wp) function misalignment(larc, along, across, shear) result(angle)
-    type(larc_t), intent(in) :: larc
-    !> Stress along the fibres, negative; across them; in-plane shear stress
-    real(wp), intent(in) :: along, across, shear
-
-    angle = (abs(shear) + (larc%shear_modulus - larc%along)*larc%misalignment)/(larc%shear_modulus + along - across)
-  end function misalignment
 end module larc_criteria

@@ -198,6 +198,7 @@ contains
     !> True: they are complete and valid
     logical, intent(out) :: complete
     type(line_t), allocatable :: given(:), missing(:)
+    integer :: i
 
     complete = .false.
     if (.not. are_clear(settings, problems, material_group, key_library, place)) return
@@ -218,8 +219,9 @@ contains
       end if
     end if
     if (size(missing) > 0) then
-      if (.not. is_misspelt(missing, place, problems)) call report(settings, problems, material_group, '', &
-        joined(missing, ', ')//' must be given too.', place)
+      ! One of them that is given under a misspelt name has been reported.
+      if (.not. any([(problems%concern(material_group, missing(i)%text, place), i=1, size(missing))])) &
+        call report(settings, problems, material_group, '', joined(missing, ', ')//' must be given too.', place)
       return
     end if
     complete = are_clear(settings, problems, material_group, 'E nu '//orthotropic_keys, place)
@@ -244,18 +246,6 @@ contains
       if (settings%is_given(material_group, names(i)%text, place) .eqv. given) call append(words, names(i)%text)
     end do
   end function words_with
-
-  !> True: one of the missing keys is given under a misspelt name, which has already been reported.
-  logical function is_misspelt(missing, place, problems)
-    !> Names of keys
-    type(line_t), intent(in) :: missing(:)
-    !> Index of the material
-    integer, intent(in) :: place
-    type(problems_t), intent(in) :: problems
-    integer :: i
-
-    is_misspelt = any([(problems%concern(material_group, missing(i)%text, place), i=1, size(missing))])
-  end function is_misspelt
 
   !> Constants of an isotropic material.
   subroutine fill_isotropic(settings, place, material)

@@ -135,20 +135,7 @@ contains
     end do
   end subroutine library_lines
 
-  !> A cell as printed: a power of ten of zero is omitted.
-  pure function plain(cell) result(word)
-    !> The cell
-    character(len=*), intent(in) :: cell
-    !> The cell, such as 500 b
-    character(len=:), allocatable :: word
-    integer :: mark
-
-    mark = index(cell, 'e0 ')
-    word = cell
-    if (mark > 0) word = cell(:mark - 1)//cell(mark + 2:)
-  end function plain
-
-  !> One line of the table.
+  !> One line of the table; a power of ten of zero is omitted.
   pure function table_line(cells, markdown) result(line)
     !> Its cells
     type(line_t), intent(in) :: cells(:)
@@ -156,10 +143,12 @@ contains
     logical, intent(in) :: markdown
     character(len=:), allocatable :: line
     type(line_t) :: plain_cells(size(cells))
-    integer :: i
+    integer :: i, mark
 
+    plain_cells = cells
     do i = 1, size(cells)
-      plain_cells(i)%text = plain(cells(i)%text)
+      mark = index(cells(i)%text, 'e0 ')
+      if (mark > 0) plain_cells(i)%text = cells(i)%text(:mark - 1)//cells(i)%text(mark + 2:)
     end do
     line = table_row(plain_cells, [(merge(8, 14, i < heads), i=1, size(cells))], markdown)
   end function table_line

@@ -91,8 +91,8 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
-    associate (m => material)
-      if (.not. all(is_positive([m%e1, m%e2, m%g12, m%g13, m%g23]))) then
+    associate (m => material, moduli => [material%e1, material%e2, material%g12, material%g13, material%g23])
+      if (.not. all(moduli > 0 .and. moduli <= huge(moduli))) then
         objection = 'the moduli E1, E2, G12, G13 and G23 must all be positive and finite'
       else if (.not. (m%density >= 0 .and. m%density <= huge(m%density))) then
         objection = 'the density must not be negative'
@@ -108,14 +108,6 @@ contains
       end if
     end associate
   end function material_objection
-
-  !> True for a positive, finite number.
-  elemental logical function is_positive(value)
-    !> The number; NaN is not positive
-    real(wp), intent(in) :: value
-
-    is_positive = value > 0 .and. value <= huge(value)
-  end function is_positive
 
   !> Turns the fibres of a ply to an angle.
   pure subroutine set_angle(ply, angle)

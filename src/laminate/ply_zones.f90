@@ -60,13 +60,8 @@ contains
   !> Number of plies of all doublers.
   pure integer function plies(self)
     class(ply_zones_t), intent(in) :: self
-    integer :: i
 
-    plies = 0
-    if (.not. allocated(self%doublers)) return
-    do i = 1, size(self%doublers)
-      plies = plies + size(self%doublers(i)%laminate%material)
-    end do
+    plies = size(self%material())
   end function plies
 
   !> Doubler of a ply; 0: there is none.
@@ -275,7 +270,7 @@ contains
     type(ply_stack_t) :: stack
     type(ply_t), allocatable :: skin(:), above(:), below(:)
     integer, allocatable :: number(:), numbers_above(:), numbers_below(:)
-    integer :: i, next, doublers, outer(2)
+    integer :: i, k, next, doublers, outer(2)
 
     doublers = 0
     if (allocated(self%doublers)) doublers = size(self%doublers)
@@ -290,11 +285,11 @@ contains
         if (here(i) .and. doubler%face == front_face) then
           above = added(doubler, materials, skin(1)%z_top)
           outer(1) = doubler%station(size(laminate%material))
-          numbers_above = next_numbers(next, size(above))
+          numbers_above = [(next + k, k=0, size(above) - 1)]
         else if (here(i)) then
           below = added(doubler, materials, skin(size(skin))%z_bottom)
           outer(2) = doubler%station(size(laminate%material))
-          numbers_below = next_numbers(next, size(below))
+          numbers_below = [(next + k, k=0, size(below) - 1)]
         end if
         next = next + size(doubler%laminate%material)
       end associate
@@ -302,15 +297,6 @@ contains
     stack = whole_stack([numbers_above, number, numbers_below], [above, skin, below], laminate%shear_correction, &
                         [spread(outer(1), 1, size(above)), number, spread(outer(2), 1, size(below))])
   end function stack
-
-  !> Consecutive numbers.
-  pure function next_numbers(first, count) result(numbers)
-    !> The first, and how many
-    integer, intent(in) :: first, count
-    integer :: numbers(count), i
-
-    numbers = [(first + i - 1, i=1, count)]
-  end function next_numbers
 
   !> Takes away the plies that are missing; the others close the gaps.
   pure subroutine drop_plies(drops, here, plies, number)

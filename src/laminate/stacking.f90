@@ -25,7 +25,6 @@ contains
   pure function stacked_plies(laminate, materials) result(plies)
     !> Stacking sequence
     type(laminate_t), intent(in) :: laminate
-    !> Materials that it refers to
     type(material_t), intent(in) :: materials(:)
     !> The plies with their positions
     type(ply_t), allocatable :: plies(:)
@@ -50,7 +49,6 @@ contains
   pure function section_of(plies, shear_correction) result(section)
     !> Neighbouring plies: all of the laminate or those of one layer
     type(ply_t), intent(in) :: plies(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Their stiffness and mass
     type(section_t) :: section
@@ -65,7 +63,6 @@ contains
     type(ply_t), intent(in) :: plies(:)
     !> Present elastic constants of these plies
     type(elasticity_t), intent(in) :: elasticity(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)
@@ -98,25 +95,22 @@ contains
     type(elasticity_t), intent(in) :: elasticity(:)
     !> First and last ply of the layer
     integer, intent(in) :: first, last
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)
     real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), within(3), excess(3)
+    type(elasticity_t) :: present(size(plies))
     integer :: i
 
     stiffness = section_stiffness(plies(first:last), elasticity, shear_correction)
     if (shear_correction /= shear_energy .or. last - first + 1 == size(plies)) return
     z(0) = plies(1)%z_top
     z(1:) = plies%z_bottom
+    present = plies%elasticity
+    present(first:last) = elasticity
     do i = 1, size(plies)
-      if (i < first .or. i > last) then
-        in_plane(:, i) = in_plane_stiffness(plies(i), plies(i)%elasticity)
-        shear(:, i) = shear_stiffness(plies(i), plies(i)%elasticity)
-      else
-        in_plane(:, i) = in_plane_stiffness(plies(i), elasticity(i - first + 1))
-        shear(:, i) = shear_stiffness(plies(i), elasticity(i - first + 1))
-      end if
+      in_plane(:, i) = in_plane_stiffness(plies(i), present(i))
+      shear(:, i) = shear_stiffness(plies(i), present(i))
     end do
     within = layer_stiffness_from_energy(z, in_plane, shear, first, last)
     excess = within - sqrt(epsilon(within))*stiffness(19:21)

@@ -22,9 +22,7 @@ contains
 
   !> Energy-consistent transverse shear stiffness.
   pure function shear_stiffness_from_energy(z, in_plane, shear) result(stiffness)
-    !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> Packed transverse shear stiffness of each ply, shape (3, plies)
     real(wp), intent(in) :: shear(:, :)
@@ -40,9 +38,7 @@ contains
   !> (P6): of the shear forces Q of the stack it carries T Q and has the complementary energy Q E Q / 2, so that its
   !> stiffness is T E**-1 T'. By Schwarz's inequality it does not exceed the sum of G dz over the layer.
   pure function layer_stiffness_from_energy(z, in_plane, shear, first, last) result(stiffness)
-    !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> Packed transverse shear stiffness of each ply, shape (3, plies)
     real(wp), intent(in) :: shear(:, :)
@@ -60,9 +56,7 @@ contains
 
   !> Integrates equilibrium stresses of the stack, and their energy, over the thickness of a layer.
   pure subroutine integrate_layer(z, in_plane, shear, first, last, energies, carried)
-    !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> Packed transverse shear stiffness of each ply, shape (3, plies)
     real(wp), intent(in) :: shear(:, :)
@@ -100,9 +94,7 @@ contains
 
   !> Shear stresses between the plies under unit shear forces, and the share of the forces that the plies above carry.
   pure subroutine find_unit_stresses(z, in_plane, stress, carried)
-    !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> tau_xz and tau_yz (rows) on the bottom of each ply but the last, for Qx = 1 and Qy = 1 (columns), and their
     !> integrals from the top of the first, (2, 2, plies - 1)
@@ -131,9 +123,7 @@ contains
   !> Derivative of the in-plane strain, constant + slope z, along x for Qx = 1 (column 1) and along y for Qy = 1 (column
   !> 2).
   pure subroutine strains_of_unit_shear(z, in_plane, constant, slope)
-    !> z of the plies' faces
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply
     real(wp), intent(in) :: in_plane(:, :)
     !> Membrane strains
     real(wp), intent(out) :: constant(3, 2)

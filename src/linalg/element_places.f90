@@ -67,7 +67,6 @@ contains
     type(tMat), intent(in) :: matrix
     !> Number of elements of this rank
     integer, intent(in) :: elements
-    !> PETSc's code
     integer, intent(out) :: ierr
     type(tMat) :: block
     type(c_ptr) :: address

@@ -168,7 +168,6 @@ contains
   subroutine find_products(matrix, products, ierr)
     type(tMat), intent(in) :: matrix
     type(products_t), pointer, intent(out) :: products
-    !> PETSc's code
     integer, intent(out) :: ierr
     type(c_ptr) :: context
 
@@ -181,7 +180,6 @@ contains
     type(tMat) :: matrix
     !> The vector, and its product
     type(tVec) :: vector, product
-    !> PETSc's code
     integer, intent(out) :: ierr
     type(products_t), pointer :: products
     real(wp), allocatable :: values(:), results(:)
@@ -201,7 +199,6 @@ contains
     type(tPC) :: preconditioner
     !> The vector, and its product
     type(tVec) :: vector, product
-    !> PETSc's code
     integer, intent(out) :: ierr
     type(products_t), pointer :: products
     type(tMat) :: matrix, of_preconditioner

@@ -207,7 +207,6 @@ contains
     type(tVec), intent(inout) :: vector
     !> Its owned part
     real(wp), intent(in) :: values(:)
-    !> PETSc's code
     integer, intent(out) :: ierr
     real(wp), pointer :: inside(:)
 
@@ -223,7 +222,6 @@ contains
     type(tVec), intent(inout) :: vector
     !> Its owned part
     real(wp), intent(out) :: values(:)
-    !> PETSc's code
     integer, intent(out) :: ierr
     real(wp), pointer :: inside(:)
 

@@ -70,11 +70,15 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     logical :: running
     integer :: ierr, length
+    character(len=8) :: threads
     character(len=:), allocatable :: all_options
 
     call PetscInitialized(running, ierr)
     if (running) return
-    call set_threads()
+    ! Limits OpenMP to one thread per rank, unless the environment requests more. Otherwise CHOLMOD before SuiteSparse 6
+    ! uses four threads, whatever the environment requests, for loops too short to benefit.
+    call get_environment_variable('OMP_NUM_THREADS', threads, length=length)
+    if (length == 0 .or. threads == '1') call limit_parallel_regions(0_c_int)
     ! Options such as -log_view must be set when PETSc starts, which reads them from the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)
@@ -87,16 +91,6 @@ contains
     if (ierr /= 0) call fail(error, exit_usage, 'PETSc does not start with the options "'//trim(options)//'".')
     call communicator%agree(error)
   end subroutine start_petsc
-
-  !> Limits OpenMP to one thread per rank, unless the environment requests more. Otherwise CHOLMOD before SuiteSparse 6
-  !> uses four threads, whatever the environment requests, for loops too short to benefit.
-  subroutine set_threads()
-    character(len=8) :: threads
-    integer :: length
-
-    call get_environment_variable('OMP_NUM_THREADS', threads, length=length)
-    if (length == 0 .or. threads == '1') call limit_parallel_regions(0_c_int)
-  end subroutine set_threads
 
   !> Ends PETSc; its objects must be deallocated before.
   subroutine finish_petsc()

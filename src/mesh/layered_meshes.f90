@@ -353,19 +353,9 @@ contains
       end do
       return
     end if
-    associate (range => self%zones(zone))
-      area = length(self%along(1)%span(range%columns))*length(self%along(2)%span(range%rows))
+    associate (x => self%along(1)%span(self%zones(zone)%columns), y => self%along(2)%span(self%zones(zone)%rows))
+      area = (x(2) - x(1))*(y(2) - y(1))
     end associate
-
-  contains
-
-    !> Length between two ends.
-    pure real(wp) function length(ends)
-      !> Their coordinates
-      real(wp), intent(in) :: ends(2)
-
-      length = ends(2) - ends(1)
-    end function length
   end function zone_area
 
   !> Length of the mean cell of a zone: the root of its mean area.

@@ -7,8 +7,7 @@ module line_overlaps
   use roundings, only: rounding
   implicit none
   private
-  public :: line_overlap_t, overlaps_of_cells, overlaps_of_nodes, overlaps_of_node_parts, parts_of_cells, parts_of_nodes
-  public :: node_bounds, overlaps_of, unfolded
+  public :: line_overlap_t, node_bounds, overlaps_of, overlaps_of_nodes, overlaps_of_node_parts, parts_of, unfolded
 
   !> Intervals of the other division that have a length in common with an interval.
   type :: line_overlap_t
@@ -83,18 +82,6 @@ contains
     end do
   end function overlaps_of
 
-  !> Overlaps of the cells of a line with those of another.
-  pure function overlaps_of_cells(line, others, halved) result(overlaps)
-    !> The line, and the other one from the same origin
-    type(cell_line_t), intent(in) :: line, others
-    !> True: the other line begins on a cut at 0 and is continued by its image
-    logical, intent(in) :: halved
-    !> (cells)
-    type(line_overlap_t), allocatable :: overlaps(:)
-
-    overlaps = overlaps_of(line%bounds(), others%bounds(), halved)
-  end function overlaps_of_cells
-
   !> Overlaps of the parts of cells that are assigned to the nodes of a line with those of another.
   pure function overlaps_of_nodes(line, begins_on_cut, origin, others, halved) result(overlaps)
     !> The line, and the other one
@@ -143,28 +130,6 @@ contains
     nodes(1) = ends(1)
     overlaps = overlaps_of(bounds + origin, nodes, halved)
   end function overlaps_of_node_parts
-
-  !> Part of each cell of a line between two coordinates.
-  pure function parts_of_cells(line, low, high) result(parts)
-    type(cell_line_t), intent(in) :: line
-    !> The coordinates
-    real(wp), intent(in) :: low, high
-    !> 0 to 1, (cells)
-    real(wp), allocatable :: parts(:)
-
-    parts = parts_of(line%bounds(), low, high)
-  end function parts_of_cells
-
-  !> The same of the parts of cells that are assigned to the nodes.
-  pure function parts_of_nodes(line, low, high) result(parts)
-    type(cell_line_t), intent(in) :: line
-    !> The coordinates
-    real(wp), intent(in) :: low, high
-    !> 0 to 1, (nodes)
-    real(wp), allocatable :: parts(:)
-
-    parts = parts_of(node_bounds(line%bounds(), .false.), low, high)
-  end function parts_of_nodes
 
   !> Part of each interval between two coordinates.
   pure function parts_of(bounds, low, high) result(parts)

@@ -38,7 +38,6 @@ module numberings
     !> Point and component of each row of this rank, (2, rows)
     integer, allocatable, private :: places(:, :)
   contains
-    procedure :: owns
     procedure :: place_of
     procedure :: gather
     procedure :: scatter
@@ -105,7 +104,6 @@ contains
   !> Removes the columns of bending from the rows of in-plane displacements, and the reverse.
   pure subroutine drop_coupling(self, equation)
     type(numbering_t), intent(inout) :: self
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     logical :: in_plane(-1:self%total - 1), kept(size(self%columns))
     integer :: row, i, row_start(size(self%row_start))
@@ -139,15 +137,6 @@ contains
       end do
     end do
   end subroutine find_places
-
-  !> True if this rank has an equation.
-  pure logical function owns(self, equation)
-    class(numbering_t), intent(in) :: self
-    !> Equation, from 0
-    integer, intent(in) :: equation
-
-    owns = equation >= self%first_row .and. equation < self%first_row + self%rows
-  end function owns
 
   !> Point and component of an equation of this rank.
   pure subroutine place_of(self, equation, point, component)
@@ -185,7 +174,6 @@ contains
 
   !> Number of rows before this rank's.
   pure integer function first_row_of(equation, distribution) result(first)
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     !> Owners
     type(distribution_t), intent(in) :: distribution

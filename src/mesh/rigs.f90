@@ -11,7 +11,7 @@ module rigs
   use support_parameters, only: support_t, bearing_edge, window_rectangle, window_circle
   implicit none
   private
-  public :: crossing_t, window_lines, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
+  public :: crossing_t, window_lines, nodes_on_frame, circle_crossings, clamp_nodes
 
   !> A point where the edge of a circular window crosses a side of a cell.
   type :: crossing_t
@@ -49,15 +49,8 @@ contains
     on_frame = [(support%carries(grid%node_coordinates(:, node)), node=1, grid%nodes())]
   end function nodes_on_frame
 
-  !> True if a rig fixes w where the edge of its window crosses the sides of cells.
-  pure logical function has_crossings(support)
-    type(support_t), intent(in) :: support
-
-    has_crossings = support%shape == window_circle .and. support%bearing == bearing_edge
-  end function has_crossings
-
-  !> Points where the edge of a circular window crosses the sides of a cell. Each side belongs to the cell above it or
-  !> to its right, a side at the border of the grid to its only cell.
+  !> Points where a rig fixes w as the edge of its circular window crosses the sides of a cell. Each side belongs to the
+  !> cell above it or to its right, a side at the border of the grid to its only cell.
   pure function circle_crossings(grid, support, cell) result(crossings)
     class(cell_grid_t), intent(in) :: grid
     type(support_t), intent(in) :: support
@@ -66,7 +59,7 @@ contains
     integer :: place(2), nodes(9)
 
     allocate (crossings(0))
-    if (.not. has_crossings(support)) return
+    if (support%shape /= window_circle .or. support%bearing /= bearing_edge) return
     place = grid%place_of(cell)
     nodes = grid%cell_nodes(cell)
     call add_crossings(grid, support%radius, nodes, [1, 4, 7], 2, crossings)
@@ -124,12 +117,4 @@ contains
       nodes = [nodes, minloc(radii, dim=1, mask=distances <= minval(distances) + rounding*maxval(radii))]
     end do
   end function clamp_nodes
-
-  !> Fraction of a clamp's stiffness in the model: the deck lists each clamp of the plate, and each has an image in
-  !> every part of the plate.
-  pure real(wp) function clamp_share(grid)
-    class(cell_grid_t), intent(in) :: grid
-
-    clamp_share = 1.0_wp/grid%multiplicity
-  end function clamp_share
 end module rigs

@@ -89,8 +89,7 @@ contains
     allocate (all(settings%groups_named(group)))
     do place = 1, size(all)
       associate (stringer => all(place), s => settings)
-        stringer%name = ''
-        if (s%is_known(group, 'name', place)) stringer%name = trim(s%text_of(group, 'name', place))
+        stringer%name = trim(s%text_of(group, 'name', place))
         stringer%along = code_of(s%text_of(group, key_along, place), 'x y', [1, 2])
         stringer%face = code_of(s%text_of(group, 'face', place), 'front back', [face_front, face_back])
         stringer%at = s%real_of(group, key_stringer_at, place)
@@ -103,8 +102,9 @@ contains
           end if
         end do
         stringer%section = section_of_group(s, place)
-        modulus = value_of(s, 'E', place)
-        if (modulus > 0) stringer%failure_strains = [value_of(s, 'XT', place), value_of(s, 'XC', place)]/modulus
+        modulus = s%real_of(group, 'E', place)
+        if (modulus > 0) &
+          stringer%failure_strains = [s%real_of(group, 'XT', place), s%real_of(group, 'XC', place)]/modulus
       end associate
     end do
   end subroutine fill_stringers
@@ -131,24 +131,13 @@ contains
 
   contains
 
-    !> Value of one of its keys.
+    !> Value of one of its keys; 0: it is not given.
     real(wp) function of(key)
       character(len=*), intent(in) :: key
 
-      of = value_of(settings, key, place)
+      of = settings%real_of(group, key, place)
     end function of
   end function section_of_group
-
-  !> Value of a key of a stringer; 0: it is not given.
-  real(wp) function value_of(settings, key, place) result(value)
-    type(settings_t), intent(in) :: settings
-    character(len=*), intent(in) :: key
-    !> Index of its group
-    integer, intent(in) :: place
-
-    value = 0
-    if (settings%is_known(group, key, place)) value = settings%real_of(group, key, place)
-  end function value_of
 
   !> Kind of a section.
   integer function section_of(settings, place) result(section)

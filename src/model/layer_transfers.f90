@@ -300,12 +300,11 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(in) :: value(:, :)
-    real(wp), allocatable :: list(:), whole(:, :)
+    real(wp), allocatable :: whole(:, :)
 
     allocate (whole(size(value, 1), global_columns), source=0.0_wp)
     whole(:, columns) = value(:, :size(columns))
-    list = reshape(whole, [size(whole)])
-    call self%communicator%sum(list)
-    call self%keep(name, reshape(list, shape(whole)))
+    call self%communicator%sum(whole)
+    call self%keep(name, whole)
   end subroutine keep_field
 end module layer_transfers

@@ -10,7 +10,7 @@ module mesh_transfers
   use layer_transfers, only: layer_transfer_t
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: cells_around
-  use line_overlaps, only: line_overlap_t, overlaps_of_cells, overlaps_of_node_parts, overlaps_of_nodes
+  use line_overlaps, only: line_overlap_t, overlaps_of, overlaps_of_node_parts, overlaps_of_nodes
   implicit none
   private
   public :: mesh_transfer_t
@@ -47,8 +47,8 @@ contains
     allocate (self%point_origin(new%points()), source=1)
     allocate (self%element_origin(new%elements()), source=1)
     allocate (self%is_split(new%elements()), source=.true.)
-    self%cells_x = overlaps_of_cells(new%along(1)%from(-self%origin(1)), old%along(1), old%halved(1))
-    self%cells_y = overlaps_of_cells(new%along(2)%from(-self%origin(2)), old%along(2), old%halved(2))
+    self%cells_x = overlaps_of(new%along(1)%bounds() + self%origin(1), old%along(1)%bounds(), old%halved(1))
+    self%cells_y = overlaps_of(new%along(2)%bounds() + self%origin(2), old%along(2)%bounds(), old%halved(2))
     self%nodes_x = overlaps_of_nodes(new%along(1), new%halved(1), self%origin(1), old%along(1), old%halved(1))
     self%nodes_y = overlaps_of_nodes(new%along(2), new%halved(2), self%origin(2), old%along(2), old%halved(2))
     if (.not. any([(allocated(new%zones(zone)%bonded), zone=1, size(new%zones))])) return

@@ -48,8 +48,15 @@ contains
     !> (local points); ghosts zero
     real(wp), allocatable :: areas(:)
     real(wp) :: field(1, plate%halo%points)
+    integer, allocatable :: elements(:)
+    integer :: i
 
-    field(1, :) = plate%nodal_areas(struck_elements(plate, patch))
+    associate (mesh => plate%mesh, mine => plate%distribution%elements)
+      elements = pack([(i, i=1, size(mine))], mesh%is_top(mine))
+      if (present(patch)) elements = pack(elements, [(mesh%in_patch(mesh%element_cell(mine(elements(i))), patch), &
+                                                      i=1, size(elements))])
+    end associate
+    field(1, :) = plate%nodal_areas(elements)
     call move_to_first_layer(plate, field)
     areas = field(1, :)
   end function struck_areas
@@ -68,22 +75,6 @@ contains
       field(:, i) = 0
     end do
   end subroutine move_to_first_layer
-
-  !> This rank's elements of the struck layer, ascending: those under the patch, or all.
-  pure function struck_elements(plate, patch) result(elements)
-    type(composite_plate_t), intent(in) :: plate
-    !> Side of the patch; left out: all elements
-    real(wp), intent(in), optional :: patch
-    !> Positions among this rank's elements
-    integer, allocatable :: elements(:)
-    integer :: i
-
-    associate (mesh => plate%mesh, mine => plate%distribution%elements)
-      elements = pack([(i, i=1, size(mine))], mesh%is_top(mine))
-      if (present(patch)) elements = pack(elements, [(mesh%in_patch(mesh%element_cell(mine(elements(i))), patch), &
-                                                      i=1, size(elements))])
-    end associate
-  end function struck_elements
 
   !> Creates the nose over the struck face. Collective.
   subroutine build_nose(plate, nose)

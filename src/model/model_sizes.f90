@@ -75,7 +75,8 @@ contains
     ! A node has an additional layer for each zone that contains it: (1 + sum)**2 pairs, summed over pairs of zones.
     do i = 1, size(zones)
       inside = nodes_in_both(zones(i), zones(i), cells)
-      size_found%elements = size_found%elements + cells_in(zones(i))
+      size_found%elements = size_found%elements + product([zones(i)%columns(2) - zones(i)%columns(1), &
+                                                           zones(i)%rows(2) - zones(i)%rows(1)] + 1.0_wp)
       size_found%unknowns = size_found%unknowns + nint(5*inside)
       pairs = pairs + 2*inside + sum([(nodes_in_both(zones(i), zones(j), cells), j=1, size(zones))])
     end do
@@ -123,13 +124,6 @@ contains
     nodes = product(max(0.0_wp, 2*real(last - first + 1, wp) - 1 + merge(1, 0, first == 1) + &
                         merge(1, 0, last == cells)))
   end function nodes_in_both
-
-  !> Number of cells of a zone.
-  pure real(wp) function cells_in(zone)
-    type(zone_t), intent(in) :: zone
-
-    cells_in = real(zone%columns(2) - zone%columns(1) + 1, wp)*real(zone%rows(2) - zone%rows(1) + 1, wp)
-  end function cells_in
 
   !> Megabytes that a rank needs.
   pure real(wp) function megabytes_a_rank(self, ranks) result(megabytes)

@@ -21,26 +21,20 @@ contains
     !> The plate, with its elements; receives their beams
     type(composite_plate_t), intent(inout) :: plate
     type(edge_beam_t), allocatable :: beams(:), found(:)
-    integer :: element, total, pass, batch
+    integer :: element, total, pass
 
     if (.not. allocated(plate%setup%stringers)) return
     if (size(plate%setup%stringers) == 0) return
+    allocate (plate%elements%first_beam(plate%elements%batches + 1), source=1)
     do pass = 1, 2
       total = 0
       do element = 1, plate%elements%elements
         call find_beams(plate, element, found)
         if (pass == 2) beams(total + 1:total + size(found)) = found
         total = total + size(found)
+        plate%elements%first_beam(batch_of(element) + 1) = total + 1
       end do
       if (pass == 1) allocate (beams(total))
-    end do
-    allocate (plate%elements%first_beam(plate%elements%batches + 1), source=1)
-    total = 0
-    do element = 1, plate%elements%elements
-      call find_beams(plate, element, found)
-      total = total + size(found)
-      batch = batch_of(element)
-      plate%elements%first_beam(batch + 1:) = total + 1
     end do
     call move_alloc(beams, plate%elements%beams)
   end subroutine place_stringers

@@ -55,7 +55,7 @@ contains
       end do
     end if
     if (.not. allocated(setup%lines)) return
-    associate (in_plane => lines_in_plane(setup), lines => setup%lines)
+    associate (in_plane => setup%lines%prescribed .and. setup%lines%component <= 2, lines => setup%lines)
       unrestrained(1) = unrestrained(1) .and. .not. any(in_plane .and. lines%component == 1)
       unrestrained(2) = unrestrained(2) .and. .not. any(in_plane .and. lines%component == 2)
       ! A line fixed along its normal cannot rotate.
@@ -77,14 +77,4 @@ contains
     if (plate%in_plane == in_plane_tangential) &
       held = [any(supported(3:4)), any(supported(1:2)), all(supported(1:2)) .or. all(supported(3:4))]
   end function held_by_edges
-
-  !> Lines that constrain or displace the plate in its plane.
-  pure function lines_in_plane(setup) result(in_plane)
-    type(setup_t), intent(in) :: setup
-    !> True for each such line
-    logical, allocatable :: in_plane(:)
-
-    allocate (in_plane(0))
-    if (allocated(setup%lines)) in_plane = setup%lines%prescribed .and. setup%lines%component <= 2
-  end function lines_in_plane
 end module plate_constraints

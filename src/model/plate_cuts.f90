@@ -2,7 +2,7 @@
 module plate_cuts
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use line_overlaps, only: parts_of_cells, parts_of_nodes
+  use line_overlaps, only: node_bounds, parts_of
   use roundings, only: rounding
   implicit none
   private
@@ -49,8 +49,8 @@ contains
     real(wp), allocatable :: x(:, :), y(:, :)
     integer :: node, lines(2)
 
-    x = both_parts(self, mesh, 1, parts_of_nodes)
-    y = both_parts(self, mesh, 2, parts_of_nodes)
+    x = both_parts(self, node_bounds(mesh%along(1)%bounds(), .false.), 1)
+    y = both_parts(self, node_bounds(mesh%along(2)%bounds(), .false.), 2)
     do node = 1, size(parts)
       lines = mesh%lines_of(node) + 1
       parts(node) = part_of(mesh, x(:, lines(1)), y(:, lines(2)))
@@ -69,8 +69,8 @@ contains
     real(wp), allocatable :: x(:, :), y(:, :)
     integer :: cell, place(2)
 
-    x = both_parts(self, mesh, 1, parts_of_cells)
-    y = both_parts(self, mesh, 2, parts_of_cells)
+    x = both_parts(self, mesh%along(1)%bounds(), 1)
+    y = both_parts(self, mesh%along(2)%bounds(), 2)
     do cell = 1, size(parts)
       place = mesh%place_of(cell)
       parts(cell) = part_of(mesh, x(:, place(1)), y(:, place(2)))
@@ -78,22 +78,17 @@ contains
   end function of_cells
 
   !> Part of each interval of a line inside of the cut, and inside of the image of the cut on the other side of 0.
-  pure function both_parts(self, mesh, direction, parts_of) result(parts)
+  pure function both_parts(self, bounds, direction) result(parts)
     class(plate_cut_t), intent(in) :: self
-    !> Mesh of the plate, or of its modelled part
-    type(layered_mesh_t), intent(in) :: mesh
+    !> Ascending bounds of the intervals
+    real(wp), intent(in) :: bounds(:)
     integer, intent(in) :: direction
-    !> Intervals: cells or nodes
-    procedure(parts_of_cells) :: parts_of
     !> 0 to 1, (2, intervals)
-    real(wp), allocatable :: parts(:, :)
+    real(wp) :: parts(2, size(bounds) - 1)
 
-    associate (middle => self%centre(direction), half => self%length(direction)/2, line => mesh%along(direction))
-      associate (first => parts_of(line, middle - half, middle + half))
-        allocate (parts(2, size(first)))
-        parts(1, :) = first
-      end associate
-      parts(2, :) = parts_of(line, -middle - half, -middle + half)
+    associate (middle => self%centre(direction), half => self%length(direction)/2)
+      parts(1, :) = parts_of(bounds, middle - half, middle + half)
+      parts(2, :) = parts_of(bounds, -middle - half, -middle + half)
     end associate
   end function both_parts
 

@@ -9,7 +9,7 @@ module rig_models
   use elastic_edges, only: edge_spring_t, edge_springs
   use layered_meshes, only: layered_mesh_t
   use mesh_parameters, only: plate_t, edge_elastic, in_plane_free
-  use rigs, only: crossing_t, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
+  use rigs, only: crossing_t, nodes_on_frame, circle_crossings, clamp_nodes
   use support_parameters, only: support_t
   implicit none
   private
@@ -57,7 +57,7 @@ contains
     !> The rigs at its points
     type(rig_model_t) :: self
     integer, allocatable :: nodes(:)
-    integer :: i, k, point
+    integer :: i, k, point, first
 
     if (size(supports) == 0 .and. all(plate%edges /= edge_elastic)) return
     allocate (self%constrained_by(size(distribution%points)), self%frame(size(distribution%points)), &
@@ -81,12 +81,14 @@ contains
       do k = 1, size(nodes)
         point = distribution%local(mesh%first_point(nodes(k)))
         if (point == 0) cycle
+        ! The deck lists each clamp of the plate, and each has an image in every part of the plate.
         if (supports(i)%clamp_force > 0) then
           self%clamps(point) = i
-          self%clamp_preload(point) = self%clamp_preload(point) + supports(i)%clamp_force*clamp_share(mesh)
+          self%clamp_preload(point) = self%clamp_preload(point) + supports(i)%clamp_force/mesh%multiplicity
         else if (supports(i)%clamp_stiffness > 0) then
           self%clamps(point) = i
-          self%springs(:, point) = self%springs(:, point) + springs_of(mesh, plate, supports(i))
+          first = merge(3, 1, plate%in_plane == in_plane_free)
+          self%springs(first:, point) = self%springs(first:, point) + supports(i)%clamp_stiffness/mesh%multiplicity
         else
           self%constrained_by(point) = i
         end if
@@ -211,18 +213,6 @@ contains
       end associate
     end do
   end subroutine add_to_columns
-
-  !> Stiffness that one clamp of the deck adds to the model.
-  pure function springs_of(mesh, plate, support) result(springs)
-    type(layered_mesh_t), intent(in) :: mesh
-    type(plate_t), intent(in) :: plate
-    type(support_t), intent(in) :: support
-    !> Along u, v and w
-    real(wp) :: springs(3)
-
-    springs = support%clamp_stiffness*clamp_share(mesh)
-    if (plate%in_plane == in_plane_free) springs(1:2) = 0
-  end function springs_of
 
   !> Adds the unknowns fixed by rigs to a table. Frames and clamps that fix w fix it at both faces, so that all layers
   !> are held.

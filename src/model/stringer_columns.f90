@@ -70,7 +70,7 @@ contains
     !> (sign, column)
     real(wp), allocatable :: ranges(:, :)
     real(wp), allocatable :: motion(:, :), flat(:)
-    real(wp) :: r(lanes, 9, 5)
+    real(wp) :: r(lanes, 9, 5), values(columns, 3)
     integer :: b, k, i
 
     allocate (ranges(2, columns*size(plate%setup%stringers)), source=0.0_wp)
@@ -81,8 +81,9 @@ contains
         call gather(plate%elements%points(:, :, b), motion, r)
         do k = plate%elements%first_beam(b), plate%elements%first_beam(b + 1) - 1
           i = columns*(plate%elements%beams(k)%stringer - 1)
-          call widen(ranges(:, i + 1:i + columns), &
-                     resultants(plate, k, strains_of_beam(plate%elements, k, plate%setup%mesh%kinematics, r)))
+          values = resultants(plate, k, strains_of_beam(plate%elements, k, plate%setup%mesh%kinematics, r))
+          ranges(1, i + 1:i + columns) = max(ranges(1, i + 1:i + columns), maxval(values, 2))
+          ranges(2, i + 1:i + columns) = max(ranges(2, i + 1:i + columns), -minval(values, 2))
         end do
       end do
     end if
@@ -139,15 +140,4 @@ contains
       if (.not. section%depth > 0) values(4, :) = strains(axial_row:axial_row + 2)
     end associate
   end function resultants
-
-  !> Widens ranges by values.
-  pure subroutine widen(ranges, values)
-    !> (sign, column)
-    real(wp), intent(inout) :: ranges(:, :)
-    !> (column, point)
-    real(wp), intent(in) :: values(:, :)
-
-    ranges(1, :) = max(ranges(1, :), maxval(values, 2))
-    ranges(2, :) = max(ranges(2, :), -minval(values, 2))
-  end subroutine widen
 end module stringer_columns

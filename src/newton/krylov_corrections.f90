@@ -101,7 +101,6 @@ contains
   subroutine solve_load_tangent(operator, model, cohesive, forces, solution, error)
     !> The operator, just factored
     type(tangent_operator_t), target, intent(inout) :: operator
-    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The interfaces with their tangents
     type(cohesive_interfaces_t), intent(in) :: cohesive

@@ -39,7 +39,6 @@ contains
 
   !> Iteration of a step before its first residual, with pointers to the model, the operator and both states.
   function new_newton_iteration(model, equilibrium, operator, old, new) result(self)
-    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     type(equilibrium_t), intent(in) :: equilibrium
     type(tangent_operator_t), target, intent(in) :: operator

@@ -29,21 +29,13 @@ module step_problems
     !> Constants of Newton's method
     type(newton_controls_t) :: controls
   contains
-    !> Predictor of the state at the end of the step.
     procedure(begin_step), deferred :: begin
-    !> Residual of equilibrium without ties and contact.
     procedure(find_residual), deferred :: find_residual
-    !> Residual relative to the reference force.
     procedure(residual_norm), deferred :: residual_norm
-    !> True if the iteration may end with a residual within the tolerance.
     procedure(may_stop), deferred :: may_stop
-    !> Finds a correction by the tangent, renewing the operator where that is due.
     procedure(find_correction), deferred :: find_correction
-    !> Finds the impactor's force for a displacement, where there is one.
     procedure :: find_force
-    !> Completes the motion after a correction.
     procedure(complete), deferred :: complete
-    !> Completes the state of a step that has converged, and its ledger.
     procedure(finish), deferred :: finish
   end type step_problem_t
 
@@ -110,7 +102,7 @@ module step_problems
 
 contains
 
-  !> There is no impactor.
+  !> Finds the impactor's force for a displacement; here there is none.
   subroutine find_force(self, at)
     class(step_problem_t), intent(inout) :: self
     !> The iteration, the displacement of its state known
@@ -120,7 +112,6 @@ contains
   !> Tries a step. If it has not converged, `new` is undefined on return.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     class(step_problem_t), intent(inout) :: problem
-    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator; factorized again if convergence requires it

@@ -48,7 +48,6 @@ module tangent_products
     procedure :: set_jump_stiffness
     procedure :: set_skew_part
     procedure, private :: add_elements
-    procedure, private :: add_jumps
   end type tangent_product_t
 
 contains
@@ -70,6 +69,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: field(:, :), force(:, :), inertia(:, :), rows(:)
     real(wp) :: factor
+    integer :: i
 
     product = 0
     if (.not. self%elements) call self%operator%solver%matrix%multiply(vector, product, error)
@@ -85,7 +85,11 @@ contains
         call self%model%inertia(field, inertia)
         force = force + factor*inertia
       end if
-      if (allocated(self%jumps)) call self%add_jumps(field, force)
+      if (allocated(self%jumps)) then
+        do i = 1, self%operator%numbering%owned
+          force(1:3, i) = force(1:3, i) + matmul(self%jumps(:, :, i), field(1:3, i))
+        end do
+      end if
       allocate (rows, mold=product)
       call self%operator%numbering%gather(force, rows)
       product = product + rows
@@ -219,17 +223,4 @@ contains
       force = force - lines
     end associate
   end subroutine add_elements
-
-  !> Adds the forces on jumps.
-  pure subroutine add_jumps(self, motion, force)
-    class(tangent_product_t), intent(in) :: self
-    real(wp), intent(in) :: motion(:, :)
-    !> Forces at the owned points, (5, points)
-    real(wp), intent(inout) :: force(:, :)
-    integer :: i
-
-    do i = 1, self%operator%numbering%owned
-      force(1:3, i) = force(1:3, i) + matmul(self%jumps(:, :, i), motion(1:3, i))
-    end do
-  end subroutine add_jumps
 end module tangent_products

@@ -57,8 +57,7 @@ contains
     !> This rank's contribution; the sum on return
     real(wp), intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
   end subroutine sum_real
 
   !> Sum of a list of reals over the ranks, item by item.
@@ -67,8 +66,7 @@ contains
     !> This rank's contributions; the sums on return
     real(wp), contiguous, intent(inout) :: values(:)
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
   end subroutine sum_reals
 
   !> Sum of a table of reals over the ranks, item by item.
@@ -77,8 +75,7 @@ contains
     !> This rank's contributions; the sums on return
     real(wp), contiguous, intent(inout) :: values(:, :)
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
   end subroutine sum_table
 
   !> Sum of an integer over the ranks.
@@ -87,8 +84,7 @@ contains
     !> This rank's contribution; the sum on return
     integer, intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_SUM, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_SUM, self%group)
   end subroutine sum_integer
 
   !> Sum of a long integer over the ranks.
@@ -97,8 +93,7 @@ contains
     !> This rank's contribution; the sum on return
     integer(long), intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER8, MPI_SUM, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER8, MPI_SUM, self%group)
   end subroutine sum_long
 
   !> Sum of a list of long integers over the ranks, item by item.
@@ -107,8 +102,7 @@ contains
     !> This rank's contributions; the sums on return
     integer(long), contiguous, intent(inout) :: values(:)
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_INTEGER8, MPI_SUM, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_INTEGER8, MPI_SUM, self%group)
   end subroutine sum_longs
 
   !> Greatest real of the ranks.
@@ -117,8 +111,7 @@ contains
     !> This rank's value; the greatest on return
     real(wp), intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
   end subroutine maximum_real
 
   !> Greatest reals of the ranks, item by item.
@@ -127,8 +120,7 @@ contains
     !> This rank's values; the greatest on return
     real(wp), contiguous, intent(inout) :: values(:)
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
   end subroutine maximum_reals
 
   !> Greatest integer of the ranks.
@@ -137,8 +129,7 @@ contains
     !> This rank's value; the greatest on return
     integer, intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_MAX, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_MAX, self%group)
   end subroutine maximum_integer
 
   !> Least real of the ranks.
@@ -147,8 +138,7 @@ contains
     !> This rank's value; the least on return
     real(wp), intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MIN, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MIN, self%group)
   end subroutine minimum_real
 
   !> Least integer of the ranks.
@@ -157,8 +147,7 @@ contains
     !> This rank's value; the least on return
     integer, intent(inout) :: value
 
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_MIN, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_MIN, self%group)
   end subroutine minimum_integer
 
   !> Whether a flag is raised on at least one rank.
@@ -168,8 +157,7 @@ contains
     logical, intent(in) :: flag
 
     raised = flag
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, raised, 1, MPI_LOGICAL, MPI_LOR, self%group)
+    if (self%size > 1) call MPI_Allreduce(MPI_IN_PLACE, raised, 1, MPI_LOGICAL, MPI_LOR, self%group)
   end function any_flag
 
   !> Whether a flag is raised on every rank.

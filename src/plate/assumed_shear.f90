@@ -19,7 +19,6 @@ contains
 
   !> Shear strains at the 3x3 Gauss points of a batch.
   pure subroutine assumed_shear_strains(tangents, inverse, r, strains)
-    !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 3, 3, 4)
@@ -46,7 +45,6 @@ contains
 
   !> Adds the nodal forces of shear forces at the Gauss points.
   pure subroutine add_assumed_shear_forces(tangents, inverse, shear, f)
-    !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 3, 3, 4)
@@ -82,7 +80,6 @@ contains
 
   !> Covariant strains along the three rows (or columns) of nodes, at the Gauss abscissae.
   pure subroutine sample_lines(tangents, r, offset, along, across, strains)
-    !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Samples before the first of these, steps in node number along and across the lines
@@ -117,7 +114,6 @@ contains
 
   !> Transpose of `sample_lines`.
   pure subroutine add_line_forces(tangents, shear, offset, along, across, f)
-    !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     !> Forces conjugate to the strains (lane, abscissa, line)
     real(wp), intent(in) :: shear(lanes, 3, 3)

@@ -14,7 +14,6 @@ contains
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains on entry, resultants on return (lane, point, component)
     real(wp), intent(inout) :: s(lanes, 9, 6)
-    !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
     real(wp) :: exx, eyy, gxy, kxx, kyy, kxy, nxx, nyy, nxy, mxx, myy, mxy
     integer :: g, lane
@@ -102,7 +101,6 @@ contains
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains (lane, point, component)
     real(wp), intent(in) :: s(lanes, 9, 6)
-    !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
     integer :: g, i
 
@@ -139,7 +137,6 @@ contains
     real(wp), intent(in) :: weight(lanes, n)
     !> Strains on entry, shear forces on return (lane, point, component)
     real(wp), intent(inout) :: s(lanes, n, 2)
-    !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
     real(wp) :: xz, yz
     integer :: g, lane

@@ -19,7 +19,6 @@ contains
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
@@ -56,7 +55,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Accelerations of the unknowns (5, points)
     real(wp), contiguous, intent(in) :: a(:, :)
-    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     real(wp) :: r(lanes, 9, 5), values(lanes, 9)
     integer :: b, component, g
@@ -83,7 +81,6 @@ contains
     real(wp), intent(in) :: weight(lanes, 9)
     !> Curvatures on entry, moments on return (lane, point, component)
     real(wp), intent(inout) :: s(lanes, 9, 3)
-    !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
     real(wp) :: xx, yy, xy
     integer :: g, lane

@@ -163,7 +163,6 @@ contains
   !> Strains of the beam.
   pure function strains_of(self, is_moderate, u) result(strains)
     class(edge_beam_t), intent(in) :: self
-    !> True: von Karman's strains
     logical, intent(in) :: is_moderate
     !> Unknowns of the element
     real(wp), intent(in) :: u(45)
@@ -176,7 +175,6 @@ contains
   !> Adds the nodal forces and the strain energy.
   pure subroutine add_force(self, is_moderate, u, f, energy)
     class(edge_beam_t), intent(in) :: self
-    !> True: von Karman's strains
     logical, intent(in) :: is_moderate
     !> Unknowns of the element
     real(wp), intent(in) :: u(45)
@@ -194,7 +192,6 @@ contains
   !> Adds the tangent stiffness at a displacement times a motion.
   pure subroutine add_tangent_force(self, is_moderate, u, motion, f)
     class(edge_beam_t), intent(in) :: self
-    !> True: von Karman's strains
     logical, intent(in) :: is_moderate
     !> Unknowns of the element, and their motion
     real(wp), intent(in) :: u(45), motion(45)
@@ -216,7 +213,6 @@ contains
   !> Adds the tangent stiffness times a factor to the matrix of the element.
   pure subroutine add_stiffness(self, is_moderate, u, factor, k)
     class(edge_beam_t), intent(in) :: self
-    !> True: von Karman's strains
     logical, intent(in) :: is_moderate
     !> Unknowns of the element, used in this case only; factor
     real(wp), intent(in) :: u(45), factor
@@ -288,7 +284,6 @@ contains
   !> deflection and the axial force N, over the square of half the length.
   pure real(wp) function slope_stiffness(self, is_moderate, u) result(largest)
     class(edge_beam_t), intent(in) :: self
-    !> True: von Karman's strains
     logical, intent(in) :: is_moderate
     !> Unknowns of the element
     real(wp), intent(in) :: u(45)

@@ -17,7 +17,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Accelerations of the unknowns (5, points)
     real(wp), contiguous, intent(in) :: a(:, :)
-    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     real(wp) :: r(lanes, 9, 5), values(lanes, 9, 5), of_beams(lanes, 9, 5)
     integer :: b, component

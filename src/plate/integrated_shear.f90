@@ -14,7 +14,6 @@ contains
   pure subroutine integrated_shear_strains(n, inverse, r, strains)
     !> Number of points, 9 or 4
     integer, intent(in) :: n
-    !> Derivatives xi,x eta,x xi,y eta,y at the points
     real(wp), intent(in) :: inverse(lanes, n, 4)
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Strains xz, yz
@@ -38,7 +37,6 @@ contains
   pure subroutine add_integrated_shear_forces(n, inverse, shear, f)
     !> Number of points, 9 or 4
     integer, intent(in) :: n
-    !> Derivatives xi,x eta,x xi,y eta,y at the points
     real(wp), intent(in) :: inverse(lanes, n, 4)
     !> Shear forces xz, yz, times the areas of the points
     real(wp), intent(in) :: shear(lanes, n, 2)

@@ -22,7 +22,6 @@ contains
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     integer, intent(in) :: kinematics
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
@@ -129,7 +128,6 @@ contains
     real(wp), intent(inout) :: strains(lanes, 9, 6)
     !> Unknowns of the nodes on entry, forces on them on return
     real(wp), intent(inout) :: r(lanes, 9, 5)
-    !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
     !> Resultants of stress-free strains, and their energy per area
     real(wp), intent(in), optional :: free(lanes, 7)

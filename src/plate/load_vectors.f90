@@ -14,7 +14,6 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Pressure at the Gauss points (9, elements), positive downward
     real(wp), intent(in) :: pressure(:, :)
-    !> Forces (5, columns that the batches add to)
     real(wp), intent(inout) :: f(:, :)
     integer :: element
 

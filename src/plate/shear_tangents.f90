@@ -29,7 +29,6 @@ contains
 
   !> Stiffness of assumed strains: samples = operator * unknowns, energy = samples * sample stiffness * samples / 2.
   subroutine add_assumed_tangent(tangents, inverse, weight, s, k)
-    !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     real(wp), intent(in) :: weight(lanes, 9)
@@ -70,7 +69,6 @@ contains
 
   !> Operator of each sample of the assumed strains on the unknowns w, theta_x, theta_y of the three nodes of its line.
   pure subroutine sample_operators(tangents, operator, dofs)
-    !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)
     !> Coefficients (lane, unknown of the line, sample)
     real(wp), intent(out) :: operator(lanes, 9, shear_samples)
@@ -139,7 +137,6 @@ contains
   subroutine add_integrated_tangent(n, inverse, weight, s, k)
     !> Number of shear points, 9 or 4
     integer, intent(in) :: n
-    !> Derivatives xi,x eta,x xi,y eta,y at the points
     real(wp), intent(in) :: inverse(lanes, n, 4)
     !> Area of each point
     real(wp), intent(in) :: weight(lanes, n)

@@ -14,7 +14,6 @@ contains
   pure subroutine slopes_and_values(n, inverse, x_slopes, y_slopes, values)
     !> Number of points, 9 or 4
     integer, intent(in) :: n
-    !> Derivatives xi,x eta,x xi,y eta,y at the points
     real(wp), intent(in) :: inverse(lanes, n, 4)
     !> Derivatives with respect to x and y (lane, point, node)
     real(wp), intent(out) :: x_slopes(lanes, n, 9), y_slopes(lanes, n, 9)

@@ -23,7 +23,6 @@ contains
     integer, intent(in) :: kinematics
     !> Unknowns at which the tangent is taken, and the motion (5, points)
     real(wp), contiguous, intent(in) :: u(:, :), v(:, :)
-    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Resultants Nxx to Mxy of stress-free strains, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)

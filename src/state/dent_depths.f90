@@ -73,7 +73,9 @@ contains
               norm2(place) > farthest*plate%setup%impactor%radius) cycle
           area = mesh%cell_area(mesh%place_of(mesh%element_cell(global)))
         end associate
-        terms = area*terms_of(place(1), place(2), displacement(3, plate%distribution%local(point)))
+        associate (x => place(1), y => place(2), w => displacement(3, plate%distribution%local(point)))
+          terms = area*[1.0_wp, x, y, x*x, x*y, y*y, w, x*w, y*w]
+        end associate
         do i = 1, size(sums)
           call sums(i)%add(terms(i))
         end do
@@ -91,15 +93,6 @@ contains
       plane(1) = totals(7) - dot_product(plane(2:3), totals(2:3))
     end associate
   end subroutine find_plane
-
-  !> Terms of the sums of the plane: 1, x, y, xx, xy, yy, w, xw, yw.
-  pure function terms_of(x, y, w) result(terms)
-    !> Place, and height
-    real(wp), intent(in) :: x, y, w
-    real(wp) :: terms(9)
-
-    terms = [1.0_wp, x, y, x*x, x*y, y*y, w, x*w, y*w]
-  end function terms_of
 
   !> Slopes of the plane.
   pure subroutine fit_slopes(moments, square, is_free, slopes, is_known)

@@ -53,7 +53,6 @@ contains
   !> Predictor: the last step, scaled by the ratio of the energies.
   subroutine begin(self, at)
     class(dissipation_step_t), intent(inout) :: self
-    !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
     real(wp) :: part
 
@@ -69,7 +68,6 @@ contains
   !> Load less internal forces, and the energy dissipated.
   subroutine find_residual(self, at)
     class(dissipation_step_t), intent(in) :: self
-    !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, old => at%old, new => at%new)
@@ -81,7 +79,6 @@ contains
   !> Residual relative to internal forces and load, or the error of the dissipated energy, scaled to the same tolerance.
   real(wp) function residual_norm(self, at)
     class(dissipation_step_t), intent(in) :: self
-    !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, new => at%new)

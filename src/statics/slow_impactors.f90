@@ -33,7 +33,6 @@ contains
   !> Finds the impactor's force for the travel and the deflection of the plate, and adds the unit-load solution times
   !> its change to a correction.
   subroutine find_force_change(model, operator, part, new, correction, error)
-    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     type(tangent_operator_t), target, intent(inout) :: operator
     !> Factor of the correction that will be applied

@@ -1,5 +1,6 @@
 !> A load step of a static analysis: full Newton iterations, within those of the augmented Lagrangian.
 module static_steps
+  use cohesive_sliding, only: heat_since
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
@@ -28,7 +29,6 @@ module static_steps
     procedure :: residual_norm
     procedure :: may_stop
     procedure :: find_correction
-    !> Completes a correction at the load before: impactor, or change of the load.
     procedure :: complete_correction
     procedure :: correction_factor
     procedure :: complete
@@ -54,7 +54,6 @@ contains
   !> Predictor: the previous state.
   subroutine begin(self, at)
     class(static_step_t), intent(inout) :: self
-    !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
 
     associate (new => at%new)
@@ -66,7 +65,6 @@ contains
   !> Load less internal forces.
   subroutine find_residual(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
@@ -80,7 +78,6 @@ contains
   !> Residual relative to internal forces and load.
   real(wp) function residual_norm(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
     real(wp), allocatable :: loads(:, :)
     real(wp) :: references(2, 2)
@@ -178,7 +175,6 @@ contains
   !> Completes an accepted load step.
   subroutine finish(self, at)
     class(static_step_t), intent(in) :: self
-    !> The iteration; its state is completed
     type(newton_iteration_t), intent(inout) :: at
     real(wp) :: sums(6), contact, fracture, heat, damage, excess
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
@@ -212,7 +208,7 @@ contains
       new%ledger%external_work = old%ledger%external_work + sums(3)
       new%ledger%contact = old%ledger%contact - sums(4)
       fracture = new%interfaces%cohesive%dissipation(model%plate, old%interfaces%cohesive)
-      heat = new%interfaces%friction_heat(model%plate, old%interfaces)
+      heat = heat_since(model%plate, old%interfaces%cohesive, new%interfaces%cohesive)
       new%ledger%friction = old%ledger%friction + heat
       if (model%plate%setup%impactor%is_present) call move_slow_impactor(model%plate, old, new)
       sums(6) = sums(6) + (new%impact%force - old%impact%force)*(new%impact%patch_mean - old%impact%patch_mean)/2
@@ -220,30 +216,19 @@ contains
       new%ledger%ply_damage = old%ledger%ply_damage + damage
       new%ledger%delamination = old%ledger%delamination + fracture
       excess = sums(1) - old%ledger%strain - sums(2)
-      if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
-        call correct_work(excess, sums(6), new%ledger%external_work)
+      ! Without dissipation the strain energy is the work of the loads along the equilibrium path, theory (E3), which
+      ! the trapezoidal rule over a step approximates. For a monotonic load the work lies between the products of
+      ! displacement increment and load before and after the step. Outside these bounds the plate has jumped to another
+      ! equilibrium, and the energy that would become kinetic is recorded as dissipated by the load step.
+      if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0 &
+          .and. .not. abs(excess) > abs(sums(6))) then
+        new%ledger%external_work = new%ledger%external_work + excess
+        excess = 0
+      end if
       new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
       call new%ledger%note_largest()
     end associate
   end subroutine finish
-
-  !> Without dissipation the strain energy is the work of the loads along the equilibrium path, theory (E3), which the
-  !> trapezoidal rule over a step approximates. For a monotonic load the work lies between the products of displacement
-  !> increment and load before and after the step. Outside these bounds the plate has jumped to another equilibrium, and
-  !> the energy that would become kinetic is recorded as dissipated by the load step.
-  pure subroutine correct_work(excess, margin, work)
-    !> Change of the strain energy less the work by the trapezoidal rule; on return the part outside the bounds of the
-    !> work
-    real(wp), intent(inout) :: excess
-    !> Half the product of the changes of load and displacement
-    real(wp), intent(in) :: margin
-    !> Work of the loads by the trapezoidal rule; receives its error
-    real(wp), intent(inout) :: work
-
-    if (abs(excess) > abs(margin)) return
-    work = work + excess
-    excess = 0
-  end subroutine correct_work
 
   !> Loads of an accepted state without the impactor's force. Before the first step only prescribed lines act.
   subroutine loads_carried(model, state, loads)
