@@ -22,7 +22,6 @@ module file_locks
     !> Locks a file, which is created if it does not exist: a descriptor, or a negative number.
     integer(c_int) function implam_lock_file(path) bind(c)
       import :: c_char, c_int
-      !> Zero-terminated path
       character(kind=c_char), intent(in) :: path(*)
     end function implam_lock_file
 

@@ -25,14 +25,12 @@ module files
     !> C library: removes a file.
     integer(c_int) function c_unlink(path) bind(c, name='unlink')
       import :: c_char, c_int
-      !> Zero-terminated path
       character(kind=c_char), intent(in) :: path(*)
     end function c_unlink
 
     !> C library: creates a folder.
     integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir')
       import :: c_char, c_int
-      !> Zero-terminated path
       character(kind=c_char), intent(in) :: path(*)
       !> Permissions
       integer(c_int), value :: mode
@@ -41,7 +39,6 @@ module files
     !> C library: whether a file may be used in a certain way.
     integer(c_int) function c_access(path, mode) bind(c, name='access')
       import :: c_char, c_int
-      !> Zero-terminated path
       character(kind=c_char), intent(in) :: path(*)
       !> The way
       integer(c_int), value :: mode
@@ -50,7 +47,6 @@ module files
     !> 1: the path is a pipe.
     integer(c_int) function implam_is_pipe(path) bind(c)
       import :: c_char, c_int
-      !> Zero-terminated path
       character(kind=c_char), intent(in) :: path(*)
     end function implam_is_pipe
 

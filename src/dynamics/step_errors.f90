@@ -182,6 +182,7 @@ contains
     class(step_error_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
     type(composite_plate_t), intent(in) :: plate
+    real(wp), allocatable :: field(:, :)
 
     call archive%item('step_error/known', self%known)
     call archive%item('step_error/time_1', self%time(1))
@@ -193,18 +194,8 @@ contains
     call archive%item('step_error/force', self%force)
     call archive%item('step_error/stiffness', self%stiffness)
     call archive%item('step_error/largest', self%largest)
-    call visit_deflections(self, archive, plate)
-  end subroutine visit
-
-  !> Saves or loads the deflections.
-  subroutine visit_deflections(self, archive, plate)
-    class(step_error_t), intent(inout) :: self
-    class(archive_t), intent(inout) :: archive
-    type(composite_plate_t), intent(in) :: plate
-    real(wp), allocatable :: field(:, :)
-
     field = transpose(self%deflection)
     call plate%visit_points(archive, 'step_error/deflection', field, area_field)
     self%deflection = transpose(field)
-  end subroutine visit_deflections
+  end subroutine visit
 end module step_errors

@@ -268,7 +268,6 @@ contains
     !> Length of the element along the fibres
     real(wp), intent(in) :: length
     type(band_strains_t), intent(in) :: strains
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Compressive strength at the onset of kinking, which later loads do not change; 0: not yet
     real(wp), intent(inout) :: kinked
@@ -311,7 +310,6 @@ contains
   pure real(wp) function exposure_to_kinking(band, strains, left, along) result(exposure)
     type(crack_band_t), intent(in) :: band
     type(band_strains_t), intent(in) :: strains
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Stress along the fibres, negative
     real(wp), intent(in) :: along
@@ -336,7 +334,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)

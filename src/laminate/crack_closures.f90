@@ -44,7 +44,6 @@ contains
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
-    !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
     !> Of E1 and E2
     real(wp) :: fractions(2)
@@ -104,7 +103,6 @@ contains
   pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
-    !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> 1: along the fibres, 2: across
     integer, intent(in) :: direction
@@ -134,7 +132,6 @@ contains
   pure subroutine find_means(elasticity, strains, left, direction, spread, means, is_open)
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
-    !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
     !> 1: along the fibres, 2: across
     integer, intent(in) :: direction
@@ -168,7 +165,6 @@ contains
   pure function compressed_share(elasticity, strains, left) result(share)
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
-    !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
     !> From 0 to 1
     real(wp) :: share(2)
@@ -196,7 +192,6 @@ contains
   pure function find_recovered(elasticity, strains, left) result(recovered)
     type(elasticity_t), intent(in) :: elasticity
     type(band_strains_t), intent(in) :: strains
-    !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
     !> Two stresses and an energy per volume
     real(wp) :: recovered(3)

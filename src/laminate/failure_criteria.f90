@@ -55,7 +55,6 @@ contains
     !> criteria_puck or criteria_larc
     integer, intent(in) :: criteria
     type(material_t), intent(in) :: material
-    !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
     !> Values in the order of the modes
     real(wp) :: indices(failure_modes)

@@ -13,7 +13,6 @@ contains
   !> Value of each criterion; a ply fails where it reaches 1. Needs XT, YT, YC, S12, Sm23.
   pure function hashin_indices(material, stress) result(indices)
     type(material_t), intent(in) :: material
-    !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
     !> Values in the order of the modes; the matrix criterion of the other sign of s22 is zero
     real(wp) :: indices(failure_modes)

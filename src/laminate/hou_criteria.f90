@@ -13,7 +13,6 @@ contains
   !> `needed_strengths`).
   pure function failure_indices(material, stress) result(indices)
     type(material_t), intent(in) :: material
-    !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
     !> Values in the order of the modes; the matrix criterion of the other sign of s22 is zero
     real(wp) :: indices(failure_modes)

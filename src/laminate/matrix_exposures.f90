@@ -104,7 +104,6 @@ contains
   !> in modes A, B and C, which are reproduced without transverse shear.
   pure real(wp) function plane_exposure(strengths, stress) result(exposure)
     type(matrix_strengths_t), intent(in) :: strengths
-    !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
     real(wp) :: c, s, normal, along, across, strength_across
     integer :: i
@@ -131,7 +130,6 @@ contains
   !> the rest reaches that of 1 - l.
   pure logical function cracks_on_a_plane(strengths, stress) result(cracks)
     type(matrix_strengths_t), intent(in) :: strengths
-    !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
     real(wp) :: across, tension, normal(planes), excess(planes)
     integer :: i

@@ -48,7 +48,6 @@ contains
     integer, intent(in) :: number(:)
     !> The plies, with their heights
     type(ply_t), intent(in) :: plies(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Position of each ply in the order of the layers, ascending; absent: its number
     integer, intent(in), optional :: station(:)

@@ -50,7 +50,6 @@ contains
   pure function section_of(plies, shear_correction) result(section)
     !> Neighbouring plies: all of the laminate or those of one layer
     type(ply_t), intent(in) :: plies(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Their stiffness and mass
     type(section_t) :: section
@@ -65,7 +64,6 @@ contains
     type(ply_t), intent(in) :: plies(:)
     !> Present elastic constants of these plies
     type(elasticity_t), intent(in) :: elasticity(:)
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)
@@ -98,7 +96,6 @@ contains
     type(elasticity_t), intent(in) :: elasticity(:)
     !> First and last ply of the layer
     integer, intent(in) :: first, last
-    !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)

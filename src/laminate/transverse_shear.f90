@@ -24,7 +24,6 @@ contains
   pure function shear_stiffness_from_energy(z, in_plane, shear) result(stiffness)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> Packed transverse shear stiffness of each ply, shape (3, plies)
     real(wp), intent(in) :: shear(:, :)
@@ -42,7 +41,6 @@ contains
   pure function layer_stiffness_from_energy(z, in_plane, shear, first, last) result(stiffness)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> Packed transverse shear stiffness of each ply, shape (3, plies)
     real(wp), intent(in) :: shear(:, :)
@@ -62,7 +60,6 @@ contains
   pure subroutine integrate_layer(z, in_plane, shear, first, last, energies, carried)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> Packed transverse shear stiffness of each ply, shape (3, plies)
     real(wp), intent(in) :: shear(:, :)
@@ -102,7 +99,6 @@ contains
   pure subroutine find_unit_stresses(z, in_plane, stress, carried)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
     !> tau_xz and tau_yz (rows) on the bottom of each ply but the last, for Qx = 1 and Qy = 1 (columns), and their
     !> integrals from the top of the first, (2, 2, plies - 1)
@@ -133,7 +129,6 @@ contains
   pure subroutine strains_of_unit_shear(z, in_plane, constant, slope)
     !> z of the plies' faces
     real(wp), intent(in) :: z(0:)
-    !> Packed in-plane stiffness of each ply
     real(wp), intent(in) :: in_plane(:, :)
     !> Membrane strains
     real(wp), intent(out) :: constant(3, 2)

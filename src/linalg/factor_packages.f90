@@ -101,7 +101,6 @@ contains
   pure function failure_message(title, outcome) result(sentence)
     !> Name of the package
     character(len=*), intent(in) :: title
-    !> One of the factor_* outcomes
     integer, intent(in) :: outcome
     character(len=:), allocatable :: sentence
 

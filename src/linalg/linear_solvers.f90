@@ -131,7 +131,6 @@ contains
   !> Factorizes with the package in use, and tests for mechanisms of the structure.
   subroutine factorize_current(self, outcome, error)
     class(linear_solver_t), intent(inout) :: self
-    !> One of the factor_* outcomes
     integer, intent(out) :: outcome
     !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error

@@ -214,7 +214,6 @@ contains
   subroutine factorize_once(self, matrix, outcome, lacks_memory, error)
     class(petsc_factor_t), intent(inout) :: self
     type(tMat), intent(in) :: matrix
-    !> One of the factor_* outcomes
     integer, intent(out) :: outcome
     !> True: MUMPS needs more memory
     logical, intent(out) :: lacks_memory
@@ -243,7 +242,6 @@ contains
   !> Outcome of a factorization by MUMPS.
   subroutine check_mumps(self, outcome, lacks_memory)
     class(petsc_factor_t), intent(in) :: self
-    !> One of the factor_* outcomes
     integer, intent(inout) :: outcome
     !> True: it needs more memory
     logical, intent(out) :: lacks_memory

@@ -19,7 +19,6 @@ contains
     real(wp), intent(in) :: half_length
     !> Number of elements
     integer, intent(in) :: elements
-    !> Half the side of the loaded patch; 0: none
     real(wp), intent(in) :: half_patch
     !> Largest over smallest element edge outside the patch; 0: smooth from the patch's elements
     real(wp), intent(in) :: grading
@@ -41,7 +40,6 @@ contains
     real(wp), intent(in) :: half_length
     !> Number of elements, more than core_elements gives
     integer, intent(in) :: elements
-    !> Half the side of the loaded patch; 0: none
     real(wp), intent(in) :: half_patch
     !> Largest over smallest element edge outside the core; 0: smooth from the core's elements
     real(wp), intent(in) :: grading
@@ -67,7 +65,6 @@ contains
 
   !> Numbers of elements on half the patch, at least one, and from there to the border of the core.
   pure function core_elements(half_patch, half_core, cell) result(counts)
-    !> Half the side of the loaded patch; 0: none
     real(wp), intent(in) :: half_patch
     !> Half the extent of the core
     real(wp), intent(in) :: half_core
@@ -83,7 +80,6 @@ contains
   !> Distance of the border of the core from the struck point: that of the patch where less than half an element fits
   !> between them.
   pure real(wp) function core_border(half_patch, half_core, cell) result(border)
-    !> Half the side of the loaded patch; 0: none
     real(wp), intent(in) :: half_patch
     !> Half the extent of the core
     real(wp), intent(in) :: half_core

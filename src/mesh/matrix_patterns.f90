@@ -45,7 +45,6 @@ contains
   !> Number of equations that a node is coupled to.
   pure integer function columns_around(mesh, equation, node, folded) result(columns)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     integer, intent(in) :: node
     !> True: points may have the equations of their images, everywhere in the plate
@@ -79,7 +78,6 @@ contains
   !> The equations that a node is coupled to, ascending.
   pure subroutine list_columns(mesh, equation, node, folded, columns)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     integer, intent(in) :: node
     !> True: points may have the equations of their images, everywhere in the plate
@@ -98,7 +96,6 @@ contains
   !> Equations of all points at the nodes that share a cell with a node.
   pure function equations_around(mesh, equation, node) result(list)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     integer, intent(in) :: node
     !> Equations, from 0

@@ -105,7 +105,6 @@ contains
   !> Removes the columns of bending from the rows of in-plane displacements, and the reverse.
   pure subroutine drop_coupling(self, equation)
     type(numbering_t), intent(inout) :: self
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     logical :: in_plane(-1:self%total - 1), kept(size(self%columns))
     integer :: row, i, row_start(size(self%row_start))
@@ -185,7 +184,6 @@ contains
 
   !> Number of rows before this rank's.
   pure integer function first_row_of(equation, distribution) result(first)
-    !> Equations of every point
     integer, intent(in) :: equation(:, :)
     !> Owners
     type(distribution_t), intent(in) :: distribution

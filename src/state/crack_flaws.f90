@@ -29,6 +29,7 @@ contains
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
     real(wp), allocatable :: strains(:, :)
+    logical, allocatable :: failed(:, :)
     logical :: beside(size(plate%mesh%zones)), cracked(product(plate%mesh%cells))
     integer :: zone, ply
 
@@ -38,7 +39,8 @@ contains
         beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &
                  delaminations%flaw_strength < 1
         if (.not. any(beside)) cycle
-        cracked = cracked_cells(plate, plies, ply)
+        failed = plies%failed_in_elements(plate, ply)
+        cracked = cells_of(plate, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
         do zone = 1, size(beside)
           if (beside(zone)) call weaken_beside(interfaces%cohesive, plate, zone, cracked, &
                                                block_thickness(plate%layup%laminates(1)%plies, ply), &
@@ -121,20 +123,6 @@ contains
     end do
     cracked = cells_of(plate, cracks)
   end function sheared_cells
-
-  !> Cells with matrix cracks in a ply, on all ranks. Collective.
-  function cracked_cells(plate, plies, ply) result(cracked)
-    type(composite_plate_t), intent(in) :: plate
-    !> Failures of the plies
-    type(ply_failure_t), intent(in) :: plies
-    integer, intent(in) :: ply
-    !> (cells of the mesh)
-    logical, allocatable :: cracked(:)
-    logical, allocatable :: failed(:, :)
-
-    failed = plies%failed_in_elements(plate, ply)
-    cracked = cells_of(plate, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
-  end function cracked_cells
 
   !> Cells of elements, on all ranks. Collective.
   function cells_of(plate, elements) result(cells)

@@ -5,7 +5,6 @@ module states
   use kinds, only: wp
   use archives, only: archive_t
   use contact_loading, only: loading_indentation
-  use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use impactors, only: new_impactor, impactor_energy
   use impact_states, only: impact_state_t
   use energy_ledgers, only: ledger_t
@@ -89,20 +88,13 @@ contains
     self%impact%impactor = new_impactor(model%plate%setup%impactor)
     self%ledger%impactor = impactor_energy(model%plate%setup%impactor, self%impact%impactor)
     self%ledger%initial = self%ledger%impactor
-    self%ledger%largest = energy_of_weight(model%plate%setup%impactor, model%plate%setup%impactor%indentation)
+    ! Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
+    ! of an impactor placed on a plate at rest begins with zero, and its first steps are compared with this energy.
+    associate (weight => model%plate%setup%impactor%mass*model%plate%setup%impactor%gravity)
+      if (weight > 0) &
+        self%ledger%largest = weight*loading_indentation(model%plate%setup%impactor%indentation, weight)
+    end associate
   end function new_state
-
-  !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
-  !> of an impactor placed on a plate at rest begins with zero, and its first steps are compared with this energy.
-  pure real(wp) function energy_of_weight(impactor, law) result(energy)
-    type(impactor_parameters_t), intent(in) :: impactor
-    type(indentation_law_t), intent(in) :: law
-    real(wp) :: weight
-
-    energy = 0
-    weight = impactor%mass*impactor%gravity
-    if (weight > 0) energy = weight*loading_indentation(law, weight)
-  end function energy_of_weight
 
   !> Copies the state from which a step starts; of the motion only the displacement, as velocity, acceleration and
   !> forces are computed by the step.
