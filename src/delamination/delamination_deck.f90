@@ -210,7 +210,10 @@ contains
     type(delamination_t), intent(inout) :: delamination
     logical :: is_cohesive
 
-    is_cohesive = suits_cohesive(settings, place, weaker)
+    ! By default it is one where no key of a front is given, and the strengths are known.
+    is_cohesive = .not. needs_front(settings, place) .and. &
+                  (weaker(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
+                  (weaker(2) > 0 .or. settings%is_given(group, key_strength_shear, place))
     ! Without plies, as their group has errors, only the key of a front decides.
     if (plies == 0) is_cohesive = .not. needs_front(settings, place)
     is_cohesive = is_cohesive .or. delamination%bonds_doublers()
@@ -223,18 +226,6 @@ contains
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
     call fill_strength(settings, place, key_strength_shear, weaker(2), delamination%strength_shear)
   end subroutine fill_law
-
-  !> True if a cohesive law is the default: no key of a front is given, and the strengths are known.
-  pure logical function suits_cohesive(settings, place, of_plies) result(suits)
-    type(settings_t), intent(in) :: settings
-    integer, intent(in) :: place
-    !> Strengths YT and S12 of the weaker ply; 0: not given
-    real(wp), intent(in) :: of_plies(2)
-
-    suits = .not. needs_front(settings, place) .and. &
-            (of_plies(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
-            (of_plies(2) > 0 .or. settings%is_given(group, key_strength_shear, place))
-  end function suits_cohesive
 
   !> True if the deck gives a key that only a front has.
   pure logical function needs_front(settings, place)
@@ -309,7 +300,7 @@ contains
     if (.not. are_clear(settings, problems, group, key_strip//' '//key_starter, place)) return
     if (settings%is_given(group, key_starter, place)) then
       call report(settings, problems, group, key_strip, 'a starter is a square or a strip; give one of them.', place)
-    else if (.not. delamination%starter_strip(1) < delamination%starter_strip(2)) then
+    else if (.not. delamination%has_strip()) then
       call report(settings, problems, group, key_strip, 'the first x must be smaller than the second.', place)
     end if
   end subroutine check_strip
