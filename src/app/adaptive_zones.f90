@@ -14,7 +14,7 @@ module adaptive_zones
   use usual_units, only: in_usual_unit, length_kind
   implicit none
   private
-  public :: advance, visit_evolving, visit_zones, zone_notes
+  public :: advance, visit_zones, zone_notes
 
 contains
 
@@ -68,20 +68,6 @@ contains
       noted = noted .or. alike
     end do
   end function zone_notes
-
-  !> Saves or loads the state and the parts of the model that depend on it.
-  subroutine visit_evolving(model, stepper, archive, error)
-    !> The model with the zones of the archive
-    type(model_t), intent(inout) :: model
-    !> The time stepper, with the state
-    class(stepper_t), intent(inout) :: stepper
-    class(archive_t), intent(inout) :: archive
-    !> Set if the operator cannot be factorized again
-    type(error_t), allocatable, intent(out) :: error
-
-    call visit_zones(model%plate%setup%delaminations, archive)
-    call stepper%visit(archive, model, error)
-  end subroutine visit_evolving
 
   !> Saves the adaptive zones, or loads them: a model has to be built with them.
   subroutine visit_zones(delaminations, archive)

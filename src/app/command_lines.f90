@@ -9,7 +9,7 @@ module command_lines
   use usage_texts, only: of_term, option_rows
   implicit none
   private
-  public :: command_t, read_command_line
+  public :: argument, command_t, read_command_line
 
   !> Commands of the program, numbered as in verb_words.
   integer, parameter, public :: verb_run = 1, verb_check = 2, verb_explain = 3, verb_restart = 4, &
@@ -103,27 +103,18 @@ contains
       i = i + 1
     end do
     if (any([(any(command%options(i)%text == informing), i=1, size(command%options))])) then
-      call inform(command, verb_given)
+      ! Help or version, whatever else is given: the first option of these decides.
+      if (verb_given .and. all(command%verb /= [verb_help, verb_explain])) command%target = ''
+      do i = size(command%options), 1, -1
+        if (any(command%options(i)%text == informing(:2))) command%verb = verb_help
+        if (any(command%options(i)%text == informing(3:))) command%verb = verb_version
+      end do
       return
     end if
     if (.not. verb_given) call refuse_misspelt_verb(command%target, error)
     if (.not. allocated(error)) call require_target(command, error)
     if (.not. allocated(error)) call refuse_inapplicable(trim(verb_words(command%verb)), command%options, error)
   end subroutine read_command_line
-
-  !> Turns the command into help or version, whatever else is given: the first option of these decides.
-  subroutine inform(command, verb_given)
-    type(command_t), intent(inout) :: command
-    !> True: a command was given; the topic of help is then not its file
-    logical, intent(in) :: verb_given
-    integer :: i
-
-    if (verb_given .and. all(command%verb /= [verb_help, verb_explain])) command%target = ''
-    do i = size(command%options), 1, -1
-      if (any(command%options(i)%text == informing(:2))) command%verb = verb_help
-      if (any(command%options(i)%text == informing(3:))) command%verb = verb_version
-    end do
-  end subroutine inform
 
   !> Reads an option that begins with two dashes.
   subroutine read_option(command, word, i, error)

@@ -111,7 +111,6 @@ contains
   subroutine simulate(deck, communicator, profile, checkpoint, error)
     type(deck_t), intent(in) :: deck
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> Checkpoint to continue from; empty: from the start
     character(len=*), intent(in) :: checkpoint
@@ -139,7 +138,6 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> The deck of the first run
     type(deck_t), intent(in) :: deck
-    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     integer, intent(inout) :: code
     !> Set if a run fails
@@ -164,7 +162,6 @@ contains
   subroutine continue_run(deck, communicator, profile, error)
     type(deck_t), intent(in) :: deck
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error

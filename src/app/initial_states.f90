@@ -38,7 +38,7 @@ module initial_states
   use steppers, only: stepper_t
   implicit none
   private
-  public :: fit_initial_state, missing_start, take_initial_state, visit_incomplete_start
+  public :: fit_initial_state, take_initial_state, visit_incomplete_start
 
 contains
 
@@ -100,15 +100,6 @@ contains
     call remark_stopped(deck, remark)
     if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
-
-  !> Remark of the check on an initial state that does not exist yet.
-  function missing_start(deck) result(sentence)
-    type(deck_t), intent(in) :: deck
-    character(len=:), allocatable :: sentence
-
-    sentence = 'The initial state '//deck%setup%initial%from// &
-               ' does not exist yet, so the deck is not compared with it; the run needs it.'
-  end function missing_start
 
   !> Refuses the checkpoint that the run itself will write.
   subroutine refuse_own_end(deck, communicator, error)
@@ -280,7 +271,6 @@ contains
   !> Begins a contact on the dent of the other run, if its impactor was the same at the same place, or on a face
   !> without a dent.
   subroutine begin_contact(deck, old, indentation, log)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> That at the end of the other run; receives that of the new contact
     type(indentation_t), intent(inout) :: indentation

@@ -12,16 +12,15 @@ module programs
   use scale_tables, only: scale_lines
   use strength_tables, only: strength_lines
   use zone_tables, only: zone_lines
-  use deck_sizes, only: size_of_deck
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
   use files, only: ignore_size_signal
   use hdf5_file, only: files_left_open
-  use initial_states, only: fit_initial_state, missing_start
+  use initial_states, only: fit_initial_state
   use build_information, only: version, commit, compiler, petsc_version
   use run_provenance, only: citation_of
-  use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
+  use command_lines, only: argument, command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
                            verb_version, verb_help, verb_new, verb_completion, verb_man, verb_queue
   use computations, only: compute, read_deck_everywhere
   use root_output, only: print_lines
@@ -30,7 +29,8 @@ module programs
   use material_explain, only: explain_materials, is_material_topic, material_topic_sentence
   use result_explain, only: explain_column, explain_results, is_result_topic, result_topics_sentence
   use run_costs, only: cost_lines
-  use model_sizes, only: model_size_t
+  use model_sizes, only: model_size_t, size_of_model
+  use stepping_parameters, only: is_explicit
   use queue_scripts, only: queue_job_t, write_queue_script
   use shell_pages, only: completion, manual_page
   use starter_decks, only: starter_name, write_starter
@@ -55,7 +55,7 @@ contains
     code = exit_done
     call ignore_size_signal()
     if (launched()) call start_mpi(communicator)
-    if (command_argument_count() == 0) call print_usage(communicator)
+    if (command_argument_count() == 0) call print_lines(communicator, usage_lines())
     call read_command_line(command, error)
     if (.not. allocated(error)) then
       if (all(command%verb /= [verb_run, verb_restart])) call release_stop_signals()
@@ -66,7 +66,7 @@ contains
                           line_t('To cite: '//citation_of(version))])
       case (verb_help)
         if (command%target == '') then
-          call print_usage(communicator)
+          call print_lines(communicator, usage_lines())
         else if (size(command_help(command%target)) > 0) then
           call print_lines(communicator, command_help(command%target))
         else
@@ -95,15 +95,6 @@ contains
     if (code == exit_files) close_failed = communicator%any(files_left_open())
     if (.not. close_failed) call finish_mpi()
   end subroutine run_program
-
-  !> Prints the usage.
-  subroutine print_usage(communicator)
-    type(communicator_t), intent(in) :: communicator
-    type(line_t), allocatable :: lines(:)
-
-    call usage_lines(lines)
-    call print_lines(communicator, lines)
-  end subroutine print_usage
 
   !> Prints the manual page or the completions of a shell.
   subroutine print_page(command, communicator, error)
@@ -147,14 +138,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     type(queue_job_t) :: job
     type(line_t), allocatable :: lines(:)
-    integer :: length
 
     if (.not. communicator%is_root()) return
     job%queue = command%queue
     job%target = command%target
-    call get_command_argument(0, length=length)
-    allocate (character(len=length) :: job%program)
-    call get_command_argument(0, job%program)
+    job%program = argument(0)
     job%ranks = command%ranks
     job%seconds = command%seconds
     job%chain = command%chain
@@ -228,11 +216,12 @@ contains
     if (code /= exit_done) return
     call fit_initial_state(deck, communicator, error, lacks)
     if (allocated(error)) return
-    if (lacks) call print_lines(communicator, [line_t(missing_start(deck))])
+    if (lacks) call print_lines(communicator, [line_t('The initial state '//deck%setup%initial%from// &
+      ' does not exist yet, so the deck is not compared with it; the run needs it.')])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), ply_zone_lines(deck), zone_lines(deck), strength_lines(deck)])
-    model_size = size_of_deck(deck)
+    model_size = size_of_model(deck%setup, is_explicit(deck%stepping))
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check
 end module programs

@@ -4,11 +4,11 @@ module queue_scripts
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck
-  use deck_sizes, only: size_of_deck
   use errors, only: error_t, fail, exit_usage, exit_files
-  use new_files, only: write_new_file
+  use whole_files, only: write_new_file
   use kinds, only: wp
-  use model_sizes, only: model_size_t
+  use model_sizes, only: model_size_t, size_of_model
+  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, counted, to_text
   implicit none
   private
@@ -100,7 +100,7 @@ contains
 
     call read_valid_deck(job%target, deck, error)
     if (allocated(error)) return
-    found = size_of_deck(deck)
+    found = size_of_model(deck%setup, is_explicit(deck%stepping))
     job%name = deck%case%name
     if (allocated(job%output)) deck%output%directory = job%output
     job%checkpoint = deck%output%directory//'/'//deck%case%name//'_restart.h5'
@@ -127,7 +127,7 @@ contains
       job%tasks = job%tasks + 1
       call read_valid_deck(trim(path), deck, error)
       if (allocated(error)) exit
-      found = size_of_deck(deck)
+      found = size_of_model(deck%setup, is_explicit(deck%stepping))
       ! Ranks are those of `--program` of the sweep, by default one.
       if (job%ranks == 0) job%ranks = 1
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
@@ -236,21 +236,14 @@ contains
     if (job%chain) then
       call append(script, 'if ((code == 75 && parts < '//to_text(max_parts)//')); then again; fi')
     else
+      run = 'sbatch '//job%name//'.slurm restart'
+      if (job%queue == 'pbs') run = 'qsub -v IMPLAM_PARTS=1 '//job%name//'.pbs'
+      if (job%tasks > 0) run = 'the same script again'
       call append(script, 'if ((code == 75)); then echo "Stopped in time, with a checkpoint. To continue: '// &
-                  continuation_command(job)//'"; fi')
+                  run//'"; fi')
     end if
     call append(script, 'exit "$code"')
   end subroutine append_body
-
-  !> Command that submits a job that continues from the checkpoint.
-  pure function continuation_command(job) result(words)
-    type(queue_job_t), intent(in) :: job
-    character(len=:), allocatable :: words
-
-    words = 'sbatch '//job%name//'.slurm restart'
-    if (job%queue == 'pbs') words = 'qsub -v IMPLAM_PARTS=1 '//job%name//'.pbs'
-    if (job%tasks > 0) words = 'the same script again'
-  end function continuation_command
 
   !> Seconds before the limit that are reserved for the current step and the checkpoint.
   pure integer function kept(job)

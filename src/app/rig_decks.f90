@@ -5,7 +5,7 @@ module rig_decks
   use text, only: line_t, append
   implicit none
   private
-  public :: rig_lines
+  public :: lines_of, rig_lines
 
   !> Names of rigs with a deck, and the names as printed.
   character(len=*), parameter, public :: rigs(*) = [character(len=21) :: 'd7136', 'd7137', 'stiffened', &
@@ -104,7 +104,6 @@ contains
     type(line_t), allocatable :: lines(:)
     integer :: i
 
-    allocate (lines(0))
     do i = 1, size(deck)
       call append(lines, trim(deck(i)))
     end do

@@ -9,18 +9,9 @@ module run_advances
   use steppers, only: stepper_t
   implicit none
   private
-  public :: start_progress, show_progress
+  public :: show_progress
 
 contains
-
-  !> Starts the clock of a run or restart.
-  subroutine start_progress(progress, stepper, end)
-    type(progress_t), intent(inout) :: progress
-    class(stepper_t), intent(in) :: stepper
-    real(wp), intent(in) :: end
-
-    call progress%start(stepper%now%time/end, stepper%done())
-  end subroutine start_progress
 
   !> Prints the progress of a run, if it is due.
   subroutine show_progress(progress, deck, stepper, end, log)

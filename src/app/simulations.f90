@@ -13,10 +13,11 @@ module simulations
   use stepper_choice, only: choose_stepper
   use steppers, only: stepper_t
   use deck_contents, only: deck_t
-  use deck_provenance, only: provenance_of
+  use build_information, only: this_build
+  use deck_echo, only: adopted_values
   use result_paths, only: refuse_pipes
-  use run_provenance, only: provenance_t
-  use run_advances, only: show_progress, start_progress
+  use run_provenance, only: provenance_t, this_run
+  use run_advances, only: show_progress
   use run_moments, only: moment
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
@@ -34,8 +35,9 @@ module simulations
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_checks, only: energy_check_t
   use initial_states, only: take_initial_state, visit_incomplete_start
-  use adaptive_zones, only: visit_evolving
-  use result_rows, only: row_of, column_names, column_whole
+  use adaptive_zones, only: visit_zones
+  use result_rows, only: list_columns, row_of
+  use result_tables, only: result_name_length
   use field_results, only: field_rows, part_of, write_fields, write_mesh
   implicit none
   private
@@ -87,11 +89,12 @@ contains
     class(simulation_t), intent(out) :: self
     type(deck_t), intent(in) :: deck
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: retired
+    character(len=result_name_length), allocatable :: names(:)
+    logical, allocatable :: whole(:)
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
     if (.not. allocated(error) .and. deck%setup%initial%is_inherited) &
@@ -100,9 +103,9 @@ contains
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
     ! From here on the results of an earlier run are replaced, whose summary must not be taken for that of this run.
-    call remove_summary(self)
-    call self%history%create(communicator, self%base//'_history.csv', &
-                             column_names(deck), column_whole(deck), error)
+    if (communicator%is_root()) call remove_file(self%base//summary_ending)
+    call list_columns(deck, names, whole)
+    call self%history%create(communicator, self%base//'_history.csv', names, whole, error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -110,19 +113,11 @@ contains
     self%is_ready = .not. allocated(error)
   end subroutine initialize
 
-  !> Removes the summary of an earlier run.
-  subroutine remove_summary(self)
-    class(simulation_t), intent(in) :: self
-
-    if (self%communicator%is_root()) call remove_file(self%base//summary_ending)
-  end subroutine remove_summary
-
   !> Common part of initialise and resume: log, model, state at rest.
   subroutine prepare(self, deck, communicator, profile, append, error)
     class(simulation_t), intent(inout) :: self
     type(deck_t), intent(in) :: deck
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> True: append to the existing log
     logical, intent(in) :: append
@@ -146,7 +141,10 @@ contains
     if (allocated(error)) return
     ! A launcher gives its ranks a terminal of its own, whose output may be redirected to a file.
     if (launched()) self%log%interactive = .false.
-    self%provenance = provenance_of(deck, communicator%size)
+    self%provenance = this_run(this_build(), deck%text, communicator%size)
+    self%provenance%units = deck%case%units
+    self%provenance%case_name = deck%case%name
+    self%provenance%library = adopted_values(deck%settings)
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call self%timers%start('model')
@@ -161,7 +159,7 @@ contains
     self%record = new_run_record(self%model%plate)
     self%record%filter%frequency = deck%output%force_filter
     call log_model(self%deck, self%model, self%stepper, self%log)
-    call start_progress(self%progress, self%stepper, end_of(self))
+    call self%progress%start(self%stepper%now%time/end_of(self), self%stepper%done())
   end subroutine prepare
 
   !> Sets a run up from a checkpoint that has been opened for loading.
@@ -170,7 +168,6 @@ contains
     !> The deck of the checkpoint
     type(deck_t), intent(in) :: deck
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> The checkpoint
     character(len=*), intent(in) :: path
@@ -178,6 +175,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
     real(wp), allocatable :: last_row(:)
+    character(len=result_name_length), allocatable :: names(:)
+    logical, allocatable :: whole(:)
     integer :: rows
 
     call prepare(self, deck, communicator, profile, append=.true., error=error)
@@ -191,9 +190,8 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    call self%history%resume(communicator, self%base//'_history.csv', &
-                             column_names(deck), column_whole(deck), &
-                             rows, last_row, error)
+    call list_columns(deck, names, whole)
+    call self%history%resume(communicator, self%base//'_history.csv', names, whole, rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is missing; it continues from here.')
@@ -202,9 +200,9 @@ contains
                             merge(shown_time(self%stepper%now%time), -1.0_wp, self%fields_clock%interval > 0), error)
     if (allocated(error)) return
     call write_mesh(self%model%plate, self%fields, error)
-    call start_progress(self%progress, self%stepper, end_of(self))
+    call self%progress%start(self%stepper%now%time/end_of(self), self%stepper%done())
     if (allocated(error)) return
-    call remove_summary(self)
+    if (communicator%is_root()) call remove_file(self%base//summary_ending)
     self%is_ready = .true.
   end subroutine resume
 
@@ -217,7 +215,8 @@ contains
     !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
 
-    call visit_evolving(self%model, self%stepper, archive, error)
+    call visit_zones(self%model%plate%setup%delaminations, archive)
+    call self%stepper%visit(archive, self%model, error)
     call self%history_clock%visit(archive, 'history')
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')

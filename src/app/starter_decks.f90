@@ -2,9 +2,8 @@
 !> test of a rig.
 module starter_decks
   use errors, only: error_t
-  use new_files, only: write_new_file
-  use rig_decks, only: rig_lines
-  use text, only: line_t, append
+  use whole_files, only: write_new_file
+  use rig_decks, only: lines_of, rig_lines
   implicit none
   private
   public :: write_starter
@@ -54,17 +53,11 @@ contains
     character(len=*), intent(in) :: rig
     !> Set if the file exists or cannot be written
     type(error_t), allocatable, intent(inout) :: error
-    type(line_t), allocatable :: deck(:)
-    integer :: i
 
-    allocate (deck(0))
     if (rig /= '') then
-      deck = rig_lines(rig)
+      call write_new_file(path, rig_lines(rig), error)
     else
-      do i = 1, size(lines)
-        call append(deck, trim(lines(i)))
-      end do
+      call write_new_file(path, lines_of(lines), error)
     end if
-    call write_new_file(path, deck, error)
   end subroutine write_starter
 end module starter_decks

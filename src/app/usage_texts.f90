@@ -64,12 +64,11 @@ module usage_texts
 contains
 
   !> The help of the program.
-  pure subroutine usage_lines(lines)
+  pure function usage_lines() result(lines)
     !> Lines for the terminal
-    type(line_t), allocatable, intent(out) :: lines(:)
+    type(line_t), allocatable :: lines(:)
     integer :: i
 
-    allocate (lines(0))
     call append_rows(lines, 'Usage:', 'implam ', command_rows)
     call append_rows(lines, 'Options:', '', explained_options())
     call append_rows(lines, 'Exit codes:', '', code_rows)
@@ -77,7 +76,7 @@ contains
     do i = 1, size(notes)
       call append_wrapped(lines, '', trim(notes(i)), 2)
     end do
-  end subroutine usage_lines
+  end function usage_lines
 
   !> The part of the help on one command.
   pure function command_help(command) result(lines)

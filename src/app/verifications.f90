@@ -32,7 +32,6 @@ contains
 
   !> Stage of a run of the same deck by the same program in an earlier command. Collective.
   integer function stage_of(base, deck, commit, communicator) result(stage)
-    !> Folder and name of its results
     character(len=*), intent(in) :: base
     character(len=*), intent(in) :: deck
     !> Of the program
@@ -61,7 +60,6 @@ contains
 
   !> A summary; empty if there is none.
   subroutine read_summary(base, summary)
-    !> Folder and name of the results
     character(len=*), intent(in) :: base
     !> Its text
     character(len=:), allocatable, intent(out) :: summary

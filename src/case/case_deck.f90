@@ -6,7 +6,7 @@ module case_deck
   use text, only: lower_case
   implicit none
   private
-  public :: fill_case, fill_accuracy, stem_of, has_accuracy, needs_coarse_run
+  public :: case_t, fill_case, stem_of, has_accuracy, needs_coarse_run
 
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
@@ -35,22 +35,49 @@ module case_deck
   !> cost.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
 
+  !> The case as a whole: names, and what holds for all of the deck.
+  type :: case_t
+    !> Name of the case, which names its files
+    character(len=:), allocatable :: name
+    !> Free text kept with the results
+    character(len=:), allocatable :: title
+    !> Error of the peak force for the choice of mesh and steps, %; 0: they are given in the deck
+    real(wp) :: accuracy = 0
+    !> Units of the deck; empty: any that are consistent
+    character(len=:), allocatable :: units
+    !> True: the run ends beyond the limits of the model
+    logical :: strict = .false.
+    !> Times that elements and steps are halved
+    integer :: refine = 0
+  end type case_t
+
 contains
 
-  !> Name and title; a case without a name is named after its deck.
-  subroutine fill_case(settings, source, name, title)
+  !> The keys of the group; a case without a name is named after its deck.
+  subroutine fill_case(settings, source, filled)
     !> Keys in effect; receives a default of the name
     type(settings_t), intent(inout) :: settings
     !> Path of the deck
     character(len=*), intent(in) :: source
-    !> Name of the case, which names its files
-    character(len=:), allocatable, intent(out) :: name
-    !> Title of the case
-    character(len=:), allocatable, intent(out) :: title
+    !> The case
+    type(case_t), intent(out) :: filled
 
     if (.not. settings%is_known(group, 'name')) call settings%derive(group, 'name', name_from(source), .true.)
-    name = settings%text_of(group, 'name')
-    title = settings%text_of(group, 'title')
+    filled%name = settings%text_of(group, 'name')
+    filled%title = settings%text_of(group, 'title')
+    filled%refine = settings%integer_of(group, key_refine)
+    filled%units = settings%text_of(group, key_units)
+    filled%strict = settings%logical_of(group, 'strict')
+    select case (lower_case(settings%text_of(group, key_accuracy)))
+    case ('draft')
+      filled%accuracy = draft_error
+    case ('standard')
+      filled%accuracy = standard_error
+    case ('reference')
+      filled%accuracy = reference_error
+    case default
+      filled%accuracy = settings%real_of(group, key_accuracy)
+    end select
   end subroutine fill_case
 
   !> True: mesh and steps are chosen by the accuracy of the deck.
@@ -69,33 +96,6 @@ contains
     needs_coarse_run = has_accuracy(settings) .and. .not. has_estimate
     if (settings%is_given(group, key_error_estimate)) needs_coarse_run = settings%logical_of(group, key_error_estimate)
   end function needs_coarse_run
-
-  !> Accuracy that the case requests.
-  pure subroutine fill_accuracy(settings, accuracy, units, strict, refine)
-    type(settings_t), intent(in) :: settings
-    !> Permitted error of the peak force, %; 0: mesh and steps are given in the deck
-    real(wp), intent(out) :: accuracy
-    !> Units of the deck; empty: any that are consistent
-    character(len=:), allocatable, intent(out) :: units
-    !> True: a run ends beyond the limits of the model
-    logical, intent(out) :: strict
-    !> Times that elements and steps are halved
-    integer, intent(out) :: refine
-
-    refine = settings%integer_of(group, key_refine)
-    units = settings%text_of(group, key_units)
-    strict = settings%logical_of(group, 'strict')
-    select case (lower_case(settings%text_of(group, key_accuracy)))
-    case ('draft')
-      accuracy = draft_error
-    case ('standard')
-      accuracy = standard_error
-    case ('reference')
-      accuracy = reference_error
-    case default
-      accuracy = settings%real_of(group, key_accuracy)
-    end select
-  end subroutine fill_accuracy
 
   !> File name of a path without folders and extension; invalid characters of a case name become _.
   pure function name_from(path) result(name)

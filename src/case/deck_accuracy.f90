@@ -91,7 +91,6 @@ contains
     type(setup_scales_t) :: scales
 
     if (problems%errors() > 0) return
-    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     scales = scales_of(deck%setup)
     if (deck%setup%is_impact() .and. scales%area_mass > 0) then
       call choose_for_impact(deck, scales, problems)
@@ -136,27 +135,27 @@ contains
     follows = .not. step > 0
     if (follows) then
       call largest_step(elastic, end, bounds, step, error)
-      if (.not. is_explicit(deck%stepping)) call choose_step(deck, end, error(2), step)
+      if (.not. is_explicit(deck%stepping)) then
+        call choose_one(deck, time_group, key_step, step)
+        step = deck%settings%real_of(time_group, key_step)
+        call append(deck%reasons, 'Step '//short_text(step)//': '//counted(to_text(ceiling(end/step)), 'step')// &
+                    '; by preliminary elastic impacts it changes the force history by '// &
+                    short_text(100*error(2))//' %.')
+      end if
     end if
-    if (.not. is_explicit(deck%stepping)) call choose_integrator(deck)
-    call choose_clocks(deck, step, end)
+    if (.not. (is_explicit(deck%stepping) .or. deck%settings%is_given(impactor_group, key_integrator))) then
+      ! The integrator of the preliminary elastic impacts, which permits long steps; gear4 would shorten them.
+      call deck%settings%choose(impactor_group, key_integrator, [line_t('trapezoidal')], quoted=.true.)
+      deck%setup%impactor%integrator = integrator_trapezoidal
+    end if
+    ! Fields are written at the ends of steps; a draft has only the last.
+    if (.not. (deck%settings%is_given(output_group, key_fields_every) .or. deck%case%accuracy > max_with_fields)) &
+      call deck%settings%choose(output_group, key_fields_every, &
+                                [line_t(to_text(step*max(1, nint(end/step/fields_written))))])
     if (deck%settings%is_given(mesh_group, key_elements)) return
     call choose_elements(deck, largest_cell(elastic, step, min(end, past_contact*first%last_contact), bounds, &
                                             follows), scales, problems)
   end subroutine choose_for_impact
-
-  !> Chooses the step.
-  subroutine choose_step(deck, end, error, step)
-    type(deck_t), intent(inout) :: deck
-    !> End of the run, and the history's error with the step
-    real(wp), intent(in) :: end, error
-    real(wp), intent(inout) :: step
-
-    call choose_one(deck, time_group, key_step, step)
-    step = deck%settings%real_of(time_group, key_step)
-    call append(deck%reasons, 'Step '//short_text(step)//': '//counted(to_text(ceiling(end/step)), 'step')// &
-                '; by preliminary elastic impacts it changes the force history by '//short_text(100*error)//' %.')
-  end subroutine choose_step
 
   !> Mesh, and in time the step, of a plate under pressure.
   subroutine choose_for_pressure(deck, scales, problems)
@@ -208,7 +207,6 @@ contains
       call choose_core(deck, cell, scales%wave_length)
     end if
     number = min(number, max_along)*parts
-    allocate (words(0))
     call append(words, to_text(number(1)))
     call append(words, to_text(number(2)))
     call deck%settings%choose(mesh_group, key_elements, words)
@@ -232,17 +230,14 @@ contains
     real(wp), intent(in) :: wave_length
     type(line_t), allocatable :: words(:)
     real(wp) :: extents(2)
-    integer :: direction
 
     if (deck%settings%is_known(mesh_group, key_core) .or. deck%settings%is_known(mesh_group, key_cell)) return
     if (size(deck%setup%delaminations) > 0 .or. .not. wave_length > 0) return
     extents = min(deck%setup%mesh%patch + 2*core_waves*wave_length, &
                   deck%setup%plate%length - 2*abs(deck%setup%mesh%struck) - 4*cell)
     if (any(extents <= deck%setup%mesh%patch)) return
-    allocate (words(0))
-    do direction = 1, 2
-      call append(words, short_text(extents(direction)))
-    end do
+    call append(words, short_text(extents(1)))
+    call append(words, short_text(extents(2)))
     call deck%settings%choose(mesh_group, key_core, words)
     call choose_one(deck, mesh_group, key_cell, cell)
   end subroutine choose_core
@@ -258,27 +253,6 @@ contains
       if (.not. deck%setup%delaminations(i)%is_adaptive) side = min(side, minval(deck%setup%delaminations(i)%zone))
     end do
   end function smallest_zone
-
-  !> The impactor's integrator: that of the preliminary elastic impacts, which permits long steps. gear4 would shorten
-  !> them.
-  subroutine choose_integrator(deck)
-    type(deck_t), intent(inout) :: deck
-
-    if (deck%settings%is_given(impactor_group, key_integrator)) return
-    call deck%settings%choose(impactor_group, key_integrator, [line_t('trapezoidal')], quoted=.true.)
-    deck%setup%impactor%integrator = integrator_trapezoidal
-  end subroutine choose_integrator
-
-  !> Chooses output times of fields, at the ends of steps; a draft has only the last.
-  subroutine choose_clocks(deck, step, end)
-    type(deck_t), intent(inout) :: deck
-    !> Step and end of the run
-    real(wp), intent(in) :: step, end
-
-    if (deck%settings%is_given(output_group, key_fields_every) .or. deck%case%accuracy > max_with_fields) return
-    call deck%settings%choose(output_group, key_fields_every, &
-                              [line_t(to_text(step*max(1, nint(end/step/fields_written))))])
-  end subroutine choose_clocks
 
   !> Sets one number, to three digits.
   subroutine choose_one(deck, group, key, value)

@@ -52,19 +52,17 @@ contains
     type(ply_zone_t) :: starter
     character(len=:), allocatable :: key
     integer :: i
-    logical :: has_strip
 
-    has_strip = bond%starter_strip(1) < bond%starter_strip(2)
-    if (any(bond%doublers == 0) .or. .not. (bond%starter > 0 .or. has_strip)) return
+    if (any(bond%doublers == 0) .or. .not. (bond%starter > 0 .or. bond%has_strip())) return
     starter%at = deck%setup%mesh%struck + bond%starter_at
     starter%size = bond%starter
-    if (has_strip) then
+    key = key_starter
+    if (bond%has_strip()) then
+      key = key_strip
       starter%at(1) = deck%setup%mesh%struck(1) + sum(bond%starter_strip)/2
       starter%size = [bond%starter_strip(2) - bond%starter_strip(1), 2*deck%setup%plate%length(2)]
     end if
     if (any([(starter%overlaps(deck%setup%zones%doublers(bond%doublers(i)), 0.0_wp), i=1, size(bond%doublers))])) return
-    key = key_starter
-    if (has_strip) key = key_strip
     call report(deck%settings, problems, delamination_group, key, 'the starter lies beside the doublers; allowed: '// &
                 'within one of them.', bond%group)
   end subroutine check_starter

@@ -53,7 +53,7 @@ contains
     type(cell_line_t) :: line
     real(wp) :: half_core, reach(2)
     logical :: halved(2)
-    integer :: side, outside
+    integer :: side, outside, rest
 
     associate (mesh => deck%setup%mesh)
       line = cells_from_struck(deck%setup%plate, mesh, direction)
@@ -67,19 +67,12 @@ contains
         outside = max(1, line%cells_beyond(half_core + mesh%cell/2))
         growth = max(growth, (line%side(line%cells())/mesh%cell)**(1.0_wp/outside))
         reach = line%span()
-        enough = enough + sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + &
-                 elements_for((reach(2) - half_core)/mesh%cell)
+        ! Elements that grow as recommended from the core to the border.
+        rest = max(1, ceiling(log(1 + (reach(2) - half_core)/mesh%cell*(recommended - 1)/recommended)/log(recommended)))
+        enough = enough + sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + rest
         if (side == 1) line = line%turned()
       end do
       enough = max(enough, mesh%elements(direction))
     end associate
   end subroutine measure
-
-  !> Number of elements that grow as recommended over a length.
-  pure integer function elements_for(length) result(number)
-    !> The length over that of the elements before
-    real(wp), intent(in) :: length
-
-    number = max(1, ceiling(log(1 + length*(recommended - 1)/recommended)/log(recommended)))
-  end function elements_for
 end module deck_cell_growth

@@ -59,7 +59,6 @@ contains
       deck%setup%impactor%integrator = integrator_central
     end if
     if (problems%errors() > 0) return
-    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     scales = scales_of(deck%setup)
     if (.not. deck%settings%is_given(time_group, key_end)) call choose_end(deck, scales, problems)
     if (.not. deck%settings%is_given(time_group, key_mass_scaling)) call choose_scaling(deck, scales)
@@ -120,7 +119,6 @@ contains
     real(wp) :: step
 
     if (problems%errors() > 0) return
-    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     step = deck%stepping%central%step_factor*smallest_element_step(deck)
     if (.not. step > 0) return
     call limit_by_contact(deck, step)

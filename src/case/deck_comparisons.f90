@@ -7,7 +7,7 @@ module deck_comparisons
   use text, only: rounded_text, to_text
   implicit none
   private
-  public :: both, differ, integer_list, list_objection, material_objection, short_list
+  public :: both, differ, list_objection, material_objection, short_list
 
   !> Digits of numbers in a list, for numbers with a relative difference above 1e-9.
   integer, parameter :: digits = 10
@@ -50,7 +50,6 @@ contains
 
   !> First difference of the materials of as many plies.
   function material_objection(deck, old, mine, its, owner) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> Index of each ply's material, and of that in the other deck
     integer, intent(in) :: mine(:), its(:)
@@ -89,13 +88,4 @@ contains
     list = list(min(2, len(list) + 1):)
     if (size(numbers) == 0) list = 'none'
   end function short_list
-
-  !> Integers as text.
-  pure function integer_list(numbers) result(list)
-    !> The numbers
-    integer, intent(in) :: numbers(:)
-    character(len=:), allocatable :: list
-
-    list = short_list(real(numbers, wp))
-  end function integer_list
 end module deck_comparisons

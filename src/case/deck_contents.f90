@@ -1,7 +1,7 @@
 !> Content of a deck, as plain parameters with its text.
 module deck_contents
+  use case_deck, only: case_t
   use deck_settings, only: settings_t
-  use kinds, only: wp
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use output_parameters, only: output_t
@@ -12,21 +12,6 @@ module deck_contents
   private
   public :: deck_t
 
-  !> The case as a whole: names, and what holds for all of the deck.
-  type :: case_t
-    !> Name of the case, which names its files
-    character(len=:), allocatable :: name
-    !> Title of the case
-    character(len=:), allocatable :: title
-    !> Error of the peak force for the choice of mesh and steps, %; 0: they are given in the deck
-    real(wp) :: accuracy = 0
-    !> Units of the deck; empty: any that are consistent
-    character(len=:), allocatable :: units
-    !> True: the run ends beyond the limits of the model
-    logical :: strict = .false.
-    !> Times that elements and steps are halved
-    integer :: refine = 0
-  end type case_t
 
   !> A deck: the setup to model, and output and stepping parameters.
   type :: deck_t

@@ -6,7 +6,7 @@ module deck_crack_bands
   use crack_band_limits, only: longest_element
   use crack_bands, only: create_crack_band
   use deck_contents, only: deck_t
-  use deck_fibre_strengths, only: check_fibre_strengths, fibre_factors
+  use deck_fibre_strengths, only: belongs_to_softening, check_fibre_strengths, fibre_factors
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, are_clear
   use deck_strain_rates, only: check_strain_rates
@@ -39,22 +39,26 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
     logical :: softens
-    integer :: i
+    integer :: i, mode
 
     softens = any([(any(deck%setup%materials(i)%toughness > 0), i=1, size(deck%setup%materials))])
     call check_fibre_strengths(deck, softens, problems)
     call check_strain_rates(deck, softens, problems)
     if (.not. softens) then
-      if (deck%setup%ply_damage%in_situ) call refuse_in_situ(deck, problems)
-      if (deck%setup%ply_damage%permanent_shear) call report(deck%settings, problems, ply_damage_group, key_permanent, &
-        'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
-      if (deck%setup%ply_damage%crack_closure) call report(deck%settings, problems, ply_damage_group, key_closure, &
-        'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
+      if (deck%setup%ply_damage%in_situ .and. &
+          all([((are_clear(deck%settings, problems, material_group, toughness_keys(mode), i), &
+                 mode=1, size(toughness_keys)), i=1, size(deck%setup%materials))])) &
+        call report(deck%settings, problems, ply_damage_group, key_in_situ, &
+                    'in-situ strengths follow from the fracture energies G_mt and G_mc; give G_ft, G_fc, G_mt and '// &
+                    'G_mc of every material, or leave it out.')
+      if (deck%setup%ply_damage%permanent_shear) &
+        call report(deck%settings, problems, ply_damage_group, key_permanent, belongs_to_softening)
+      if (deck%setup%ply_damage%crack_closure) &
+        call report(deck%settings, problems, ply_damage_group, key_closure, belongs_to_softening)
       return
     end if
     do i = 1, size(deck%setup%materials)
-      call check_energies(deck, i, problems)
-      call check_shear(deck, i, problems)
+      call check_material(deck, i, problems)
     end do
     if (deck%setup%ply_damage%permanent_shear) call check_permanent_shear(deck, problems)
     if (deck%setup%ply_damage%crack_closure .and. .not. (deck%has_time .and. is_explicit(deck%stepping))) &
@@ -104,57 +108,33 @@ contains
               key_shear_strain//' of a &'//material_group//'; give it, or leave this out.')
   end subroutine check_permanent_shear
 
-  !> In-situ strengths require fracture energies.
-  subroutine refuse_in_situ(deck, problems)
-    !> The deck, without fracture energies
-    type(deck_t), intent(in) :: deck
-    type(problems_t), intent(inout) :: problems
-    integer :: place, mode
-
-    do place = 1, size(deck%setup%materials)
-      do mode = 1, size(toughness_keys)
-        if (.not. are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) return
-      end do
-    end do
-    call report(deck%settings, problems, ply_damage_group, key_in_situ, &
-      'in-situ strengths follow from the fracture energies G_mt and G_mc; give G_ft, G_fc, G_mt and G_mc of every &
-        &material, or leave it out.')
-  end subroutine refuse_in_situ
-
-  !> Checks that all four energies are given, for all materials.
-  subroutine check_energies(deck, place, problems)
+  !> Checks that all four energies are given, and that nonlinear shear has a larger failure strain than linear shear.
+  subroutine check_material(deck, place, problems)
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: missing(:)
+    real(wp) :: strain
     integer :: mode
 
     allocate (missing(0))
-    do mode = 1, size(toughness_keys)
-      if (deck%setup%materials(place)%toughness(mode) > 0) cycle
-      if (are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) &
-        call append(missing, toughness_keys(mode))
-    end do
-    if (size(missing) > 0) call report(deck%settings, problems, material_group, '', &
-      'fracture energies are given, but not '//joined(missing, ', ')// &
-      '; give G_ft, G_fc, G_mt and G_mc of every material, or none.', place)
-  end subroutine check_energies
-
-  !> Checks that nonlinear shear has a larger failure strain than linear shear.
-  subroutine check_shear(deck, place, problems)
-    type(deck_t), intent(in) :: deck
-    !> Index of the material
-    integer, intent(in) :: place
-    type(problems_t), intent(inout) :: problems
-    real(wp) :: strain, linear
-
-    strain = deck%settings%real_of(material_group, key_shear_strain, place)
-    if (.not. (strain > 0 .and. deck%setup%materials(place)%g12 > 0)) return
-    linear = deck%setup%materials(place)%s12/deck%setup%materials(place)%g12
-    if (strain < linear) call report(deck%settings, problems, material_group, key_shear_strain, 'must be at least '// &
-                                   'S12/G12 = '//short_text(linear)//', that of linear shear.', place)
-  end subroutine check_shear
+    associate (material => deck%setup%materials(place))
+      do mode = 1, size(toughness_keys)
+        if (.not. material%toughness(mode) > 0 .and. &
+            are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) &
+          call append(missing, toughness_keys(mode))
+      end do
+      if (size(missing) > 0) call report(deck%settings, problems, material_group, '', &
+        'fracture energies are given, but not '//joined(missing, ', ')// &
+        '; give G_ft, G_fc, G_mt and G_mc of every material, or none.', place)
+      strain = deck%settings%real_of(material_group, key_shear_strain, place)
+      if (.not. (strain > 0 .and. material%g12 > 0)) return
+      if (strain < material%s12/material%g12) &
+        call report(deck%settings, problems, material_group, key_shear_strain, 'must be at least S12/G12 = '// &
+                    short_text(material%s12/material%g12)//', that of linear shear.', place)
+    end associate
+  end subroutine check_material
 
   !> Warns of elements that dissipate more than the fracture energies because they are too long.
   subroutine check_lengths(deck, place, problems)
@@ -220,7 +200,7 @@ contains
     real(wp) :: lengths(2)
     type(cell_line_t) :: line
     logical :: joined(2)
-    integer :: direction
+    integer :: direction, cell
 
     lengths = [huge(1.0_wp), 0.0_wp]
     joined = is_halved(deck%setup%plate%symmetry) .or. deck%setup%impactor%is_present
@@ -228,19 +208,10 @@ contains
       line = cells_along(deck%setup%plate, deck%setup%mesh, direction)
       lengths = [min(lengths(1), minval(line%sides())), max(lengths(2), maxval(line%sides()))]
       line = line%from(deck%setup%mesh%struck(direction))
-      if (joined(direction)) lengths(2) = max(lengths(2), longest_pair(line))
+      if (.not. joined(direction)) cycle
+      do cell = 1, line%cells()
+        if (minval(abs(line%ends(cell))) < 1e-6_wp*line%side(cell)) lengths(2) = max(lengths(2), 2*line%side(cell))
+      end do
     end do
   end function element_lengths
-
-  !> Twice the longest side that ends at the struck point; 0: none does.
-  pure real(wp) function longest_pair(line) result(length)
-    !> The cells, with coordinates from there
-    type(cell_line_t), intent(in) :: line
-    integer :: cell
-
-    length = 0
-    do cell = 1, line%cells()
-      if (minval(abs(line%ends(cell))) < 1e-6_wp*line%side(cell)) length = max(length, 2*line%side(cell))
-    end do
-  end function longest_pair
 end module deck_crack_bands

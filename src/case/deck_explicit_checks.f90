@@ -24,9 +24,21 @@ contains
   subroutine check_central_differences(deck, problems)
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
+    integer :: i, before
 
-    call check_fronts(deck, problems)
     associate (s => deck%settings)
+      before = 0
+      do i = 1, size(deck%setup%delaminations)
+        associate (place => deck%setup%delaminations(i)%group)
+          if (place == before .or. deck%setup%delaminations(i)%law /= law_front) cycle
+          before = place
+          ! The release of fronts requires equilibrium at a frozen time.
+          if (are_clear(s, problems, delamination_group, key_law, place)) &
+            call report(s, problems, delamination_group, key_law, 'central differences cannot be used with a '// &
+                        'front; write &time integrator = ''generalized_alpha'', or law = ''cohesive'' with '// &
+                        'strengths.', place)
+        end associate
+      end do
       if (s%text_of(mesh_group, key_mass) == 'consistent' .and. are_clear(s, problems, mesh_group, key_mass)) &
         call report(s, problems, mesh_group, key_mass, 'central differences need a lumped mass; leave it out, or '// &
                   'write &time integrator = ''generalized_alpha''.')
@@ -36,23 +48,4 @@ contains
         call remark(s, problems, solver_group, '', no_effect)
     end associate
   end subroutine check_central_differences
-
-  !> Refuses fronts, whose release requires equilibrium at a frozen time.
-  subroutine check_fronts(deck, problems)
-    type(deck_t), intent(in) :: deck
-    type(problems_t), intent(inout) :: problems
-    integer :: i, before
-
-    before = 0
-    do i = 1, size(deck%setup%delaminations)
-      associate (place => deck%setup%delaminations(i)%group)
-        if (place == before .or. deck%setup%delaminations(i)%law /= law_front) cycle
-        before = place
-        if (are_clear(deck%settings, problems, delamination_group, key_law, place)) &
-          call report(deck%settings, problems, delamination_group, key_law, 'central differences cannot be used '// &
-                      'with a front; write &time integrator = ''generalized_alpha'', or law = ''cohesive'' with '// &
-                      'strengths.', place)
-      end associate
-    end do
-  end subroutine check_fronts
 end module deck_explicit_checks

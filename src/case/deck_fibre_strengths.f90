@@ -19,6 +19,9 @@ module deck_fibre_strengths
   private
   public :: check_fibre_strengths, fibre_factors, block_volumes, scatter_of
 
+  !> Message on keys of plies that soften.
+  character(len=*), parameter, public :: belongs_to_softening = &
+    'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.'
   !> Ratios of the reference volume to that of the plate beyond which it is probably in another unit: specimens have 1
   !> to 1e5 mm3, plates 1e3 to 1e8 mm3, and metres in place of millimetres change the ratio by 1e9.
   real(wp), parameter :: usual_ratios(2) = [1.0e-8_wp, 1.0e3_wp]
@@ -37,8 +40,7 @@ contains
     associate (s => deck%settings, damage => deck%setup%ply_damage)
       if (.not. damage%weibull_modulus > 0) return
       if (.not. softens) then
-        call report(s, problems, ply_damage_group, key_weibull, 'belongs to plies with fracture energies; give '// &
-                    'G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
+        call report(s, problems, ply_damage_group, key_weibull, belongs_to_softening)
       else if (.not. damage%reference_volume > 0) then
         if (are_clear(s, problems, ply_damage_group, key_volume)) &
           call report(s, problems, ply_damage_group, key_weibull, 'needs '//key_volume//', the stressed volume of '// &

@@ -1,7 +1,7 @@
 !> Parameters of a deck from its keys in effect, group by group.
 module deck_fillings
   use adapt_deck, only: adapt_group, fill_adapt
-  use case_deck, only: has_accuracy, fill_case, fill_accuracy
+  use case_deck, only: has_accuracy, fill_case
   use controls_deck, only: fill_controls
   use deck_accuracy, only: choose_by_accuracy
   use deck_central_differences, only: choose_for_central_differences
@@ -68,8 +68,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(problems_t), intent(inout) :: problems
 
-    call fill_case(deck%settings, deck%source, deck%case%name, deck%case%title)
-    call fill_accuracy(deck%settings, deck%case%accuracy, deck%case%units, deck%case%strict, deck%case%refine)
+    call fill_case(deck%settings, deck%source, deck%case)
     call fill_kinematics(deck%settings, deck%setup%mesh%kinematics)
     call fill_plate(deck%settings, deck%setup%plate)
     call fill_supports(deck%settings, deck%setup%supports)
@@ -79,7 +78,7 @@ contains
     call fill_materials(deck%settings, deck%setup%materials, problems)
     call fill_laminate(deck%settings, deck%setup%materials, deck%setup%laminate, problems)
     call fill_zones(deck%settings, deck%setup%materials, deck%setup%zones, problems)
-    call check_zones(deck%settings, deck%setup%zones, plies_of_laminate(deck), deck%setup%plate%length, problems)
+    call check_zones(deck%settings, deck%setup%zones, size(skin_materials(deck)), deck%setup%plate%length, problems)
     ! Checks that follow are those of the plate without invalid zones.
     if (problems%concern(doubler_group) .or. problems%concern(ply_drop_group)) deck%setup%zones = ply_zones_t()
     call fill_ply_damage(deck%settings, units_in_metre(deck%case%units), deck%setup%ply_damage)
@@ -102,14 +101,6 @@ contains
                                    [(first_alike(deck%setup%materials, deck%setup%laminate%material(ply)), &
                                      ply=1, size(deck%setup%laminate%material))])
   end function changes_of_angle
-
-  !> Number of plies of the laminate; 0: it is not valid.
-  pure integer function plies_of_laminate(deck) result(plies)
-    type(deck_t), intent(in) :: deck
-
-    plies = 0
-    if (allocated(deck%setup%laminate%material)) plies = size(deck%setup%laminate%material)
-  end function plies_of_laminate
 
   !> Materials of the plies of the laminate; none if it is not valid.
   pure function skin_materials(deck) result(material)
@@ -138,6 +129,7 @@ contains
   subroutine fill_loads(deck, problems)
     type(deck_t), intent(inout) :: deck
     type(problems_t), intent(inout) :: problems
+    real(wp) :: rho_infinity
 
     call fill_impactor(deck%settings, deck%setup%impactor, problems)
     if (deck%setup%impactor%is_present) deck%setup%mesh%struck = deck%setup%impactor%at
@@ -147,7 +139,12 @@ contains
     if (deck%case%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
-    if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), &
+    ! Released ties excite the highest frequencies of the mesh, softening laws excite them less. With these spectral
+    ! radii at high frequency the area in doc/studies/accuracy.md is the same at steps of 16, 8 and 4 us.
+    rho_infinity = 1
+    if (any(deck%setup%delaminations%law == law_cohesive)) rho_infinity = 0.5_wp
+    if (any(deck%setup%delaminations%law == law_front)) rho_infinity = 0
+    if (deck%has_time) call fill_time(deck%settings, rho_infinity, &
                                       is_error_controlled(deck%stepping%adapt), &
                                       deck%stepping%time, deck%stepping%central)
     ! Without &adapt every step has the same length.
@@ -166,17 +163,6 @@ contains
     call fill_lines(deck%settings, merge(deck%setup%loading%ramp_time, 0.0_wp, deck%has_time), deck%setup%lines)
     if (deck%setup%is_static()) call fill_static(deck%settings, deck%setup%loading)
   end subroutine fill_loads
-
-  !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws
-  !> excite them less. With these values the area in doc/studies/accuracy.md is the same at steps of 16, 8 and 4 us.
-  pure real(wp) function natural_rho_infinity(deck) result(rho_infinity)
-    !> The deck, its interfaces filled
-    type(deck_t), intent(in) :: deck
-
-    rho_infinity = 1
-    if (any(deck%setup%delaminations%law == law_cohesive)) rho_infinity = 0.5_wp
-    if (any(deck%setup%delaminations%law == law_front)) rho_infinity = 0
-  end function natural_rho_infinity
 
   !> Parameters of steps and output.
   subroutine fill_steps(deck)

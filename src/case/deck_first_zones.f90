@@ -24,8 +24,12 @@ contains
   subroutine check_left_out_zones(deck, problems)
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
+    logical :: beside_layers(size(deck%setup%lines))
     integer :: i, place
 
+    ! Lines that displace an edge of the plate in its plane do not act on layers.
+    beside_layers = [(deck%setup%initial%is_inherited .and. deck%setup%lines(i)%is_end(deck%setup%plate%length), &
+                      i=1, size(deck%setup%lines))]
     do i = 1, size(deck%setup%delaminations)
       place = deck%setup%delaminations(i)%group
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
@@ -34,7 +38,7 @@ contains
         call require('a front requires a zone; zones are adaptive with law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
         call require(key_strip//' runs across the full width of the zone')
-      else if (.not. all(beside_layers(deck)) .and. .not. problems%concern(line_group, line_key_at)) then
+      else if (.not. all(beside_layers) .and. .not. problems%concern(line_group, line_key_at)) then
         call require('a &line acts on layers that exist from the start')
       end if
     end do
@@ -50,18 +54,6 @@ contains
         call report(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
     end subroutine require
   end subroutine check_left_out_zones
-
-  !> True for lines that do not act on layers: those that displace an edge of the plate in its plane.
-  pure function beside_layers(deck)
-    type(deck_t), intent(in) :: deck
-    !> True for each such line
-    logical :: beside_layers(size(deck%setup%lines))
-    integer :: i
-
-    do i = 1, size(deck%setup%lines)
-      beside_layers(i) = deck%setup%initial%is_inherited .and. deck%setup%lines(i)%is_end(deck%setup%plate%length)
-    end do
-  end function beside_layers
 
   !> Sets the initial extents of adaptive zones.
   subroutine set_first_zones(deck, problems)

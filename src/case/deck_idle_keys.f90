@@ -44,6 +44,8 @@ contains
     !> Index of the material
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
+    logical :: has_yield_pressure
+
     if (allocated(deck%setup%laminate%material)) then
       if (.not. any(deck%setup%used_materials() == place) .and. problems%errors() == 0) then
         call remark(deck%settings, problems, material_group, '', ''''//deck%setup%materials(place)%name// &
@@ -53,38 +55,23 @@ contains
     end if
     if (problems%concern(ply_damage_group)) return
     if (deck%setup%ply_damage%is_present) then
-      call remark_strengths(deck, place, problems)
+      if (deck%setup%ply_damage%criteria /= criteria_hou .or. any(deck%setup%materials(place)%toughness > 0)) &
+        call remark_idle(deck%settings, problems, material_group, key_fibre_shear, &
+                         'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
+      if (any(deck%setup%ply_damage%criteria == [criteria_puck, criteria_larc])) &
+        call remark_idle(deck%settings, problems, material_group, key_shear_23, &
+                         'has no effect with criteria = '''//trim(merge('puck', 'larc', &
+                           deck%setup%ply_damage%criteria == criteria_puck))//'''.', place)
       return
     end if
+    ! Strengths of the plies determine the yield pressure of the struck face.
+    has_yield_pressure = deck%setup%impactor%is_present .and. &
+                         deck%setup%impactor%indentation%law == law_thornton .and. takes_laminate(deck%settings)
     call remark_first(deck, place, pack(strength_keys, .not. ((of_interfaces .and. has_interfaces(deck)) .or. &
-      (has_yield_pressure(deck) .and. (strength_keys == 'YC' .or. strength_keys == key_shear_23)))), 'strengths', &
+      (has_yield_pressure .and. (strength_keys == 'YC' .or. strength_keys == key_shear_23)))), 'strengths', &
                       problems)
     call remark_first(deck, place, toughness_keys, 'fracture energies', problems)
   end subroutine check_material
-
-  !> Remarks on strengths that the criteria of failure do not contain.
-  subroutine remark_strengths(deck, place, problems)
-    type(deck_t), intent(in) :: deck
-    !> Index of the material
-    integer, intent(in) :: place
-    type(problems_t), intent(inout) :: problems
-
-    if (deck%setup%ply_damage%criteria /= criteria_hou .or. any(deck%setup%materials(place)%toughness > 0)) &
-      call remark_idle(deck%settings, problems, material_group, key_fibre_shear, &
-                       'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
-    if (any(deck%setup%ply_damage%criteria == [criteria_puck, criteria_larc])) &
-      call remark_idle(deck%settings, problems, material_group, key_shear_23, &
-                       'has no effect with criteria = '''//trim(merge('puck', 'larc', &
-                         deck%setup%ply_damage%criteria == criteria_puck))//'''.', place)
-  end subroutine remark_strengths
-
-  !> True: strengths of the plies determine the yield pressure of the struck face.
-  logical function has_yield_pressure(deck)
-    type(deck_t), intent(in) :: deck
-
-    has_yield_pressure = deck%setup%impactor%is_present .and. &
-                         deck%setup%impactor%indentation%law == law_thornton .and. takes_laminate(deck%settings)
-  end function has_yield_pressure
 
   !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.
   pure logical function has_interfaces(deck)

@@ -2,21 +2,21 @@
 module deck_initial_states
   use cell_grids, only: cells_along
   use cell_lines, only: cell_line_t
-  use deck_comparisons, only: both, differ, integer_list, list_objection, material_objection, short_list
+  use deck_comparisons, only: both, differ, list_objection, material_objection, short_list
   use deck_contents, only: deck_t
   use deck_plate_cuts, only: cut_objection, has_same_length, moved_centre
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, remark_idle, report
+  use deck_remarks, only: are_clear, report
   use deck_zones, only: zones_objection => zone_objection
   use delamination_deck, only: key_starter, key_zone
   use delamination_parameters, only: delamination_t, law_names, law_of
   use initial_state_deck, only: initial_state_group
   use interface_places, only: delamination_group
   use kinds, only: wp
-  use laminate_parameters, only: laminate_t, shear_energy
+  use laminate_parameters, only: shear_energy
   use line_deck, only: line_group, key_rise
-  use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
-  use plate_deck, only: key_symmetry
+  use mesh_parameters, only: is_halved, symmetry_none
+  use plate_deck, only: key_symmetry, plate_group
   use plate_options, only: kinematics_linear
   use ply_damage_deck, only: key_seed, ply_damage_group
   use ply_damage_parameters, only: damage_names, numbers_of
@@ -73,8 +73,11 @@ contains
 
     objection = ''
     if (deck%setup%mesh%kinematics /= old%setup%mesh%kinematics) then
-      objection = both('&case kinematics', strains_name(deck%setup%mesh%kinematics), &
-                       strains_name(old%setup%mesh%kinematics))
+      associate (mine => deck%setup%mesh%kinematics, its => old%setup%mesh%kinematics)
+        objection = both('&case kinematics', &
+                         trim(merge('''linear''    ', '''von_karman''', mine == kinematics_linear)), &
+                         trim(merge('''linear''    ', '''von_karman''', its == kinematics_linear)))
+      end associate
     else if (.not. has_same_length(deck, old) .or. any(abs(deck%setup%initial%cut_at) > 0)) then
       objection = cut_objection(deck, old)
     end if
@@ -83,12 +86,13 @@ contains
       if (differ(mine%imperfection, its%imperfection)) then
         objection = both('&plate imperfection', to_text(mine%imperfection), to_text(its%imperfection))
       else if (abs(mine%imperfection) > 0 .and. any(mine%half_waves /= its%half_waves)) then
-        objection = both('&plate half_waves', integer_list(mine%half_waves), integer_list(its%half_waves))
+        objection = both('&plate half_waves', short_list(real(mine%half_waves, wp)), &
+                         short_list(real(its%half_waves, wp)))
       else if (any(differ(mine%curvature_radius, its%curvature_radius))) then
         objection = both('&plate curvature_radius', short_list(mine%curvature_radius), short_list(its%curvature_radius))
       else if (mine%symmetry /= its%symmetry .and. mine%symmetry /= symmetry_none) then
-        objection = both(key_symmetry, part_name(mine%symmetry), part_name(its%symmetry))// &
-                    '; allowed: the same, or ''none'''
+        objection = both(key_symmetry, value_in(deck, plate_group, key_symmetry, 0.0_wp), &
+                         value_in(old, plate_group, key_symmetry, 0.0_wp))//'; allowed: the same, or ''none'''
       end if
     end associate
     if (objection /= '') return
@@ -103,12 +107,16 @@ contains
       objection = 'its plate was cut from another one off the centre, so that the places of strengths that scatter '// &
                   '(&ply_damage '//key_seed//') are not known'
     if (objection == '') objection = interface_objection(deck, old)
-    if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck, old)
+    if (objection == '' .and. is_mapped(deck, old) .and. deck%setup%ply_damage%is_present .and. &
+        .not. deck%setup%has_crack_bands()) &
+      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) fail '// &
+                  'at once, so that their state cannot be averaged; give '// &
+                  trim(merge('the same &mesh in both decks', 'these energies              ', &
+                             has_same_length(deck, old)))
   end function inheritance_objection
 
   !> True if the meshes differ, so that the state is mapped.
   pure logical function is_mapped(deck, old)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
 
     is_mapped = .not. (has_same_lines(deck, old, 1) .and. has_same_lines(deck, old, 2))
@@ -117,7 +125,6 @@ contains
   !> True if the impactor strikes where that of the other run did, with the same indentation law and nose, so that the
   !> dent is known.
   pure logical function has_same_contact(deck, old) result(same)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
 
     same = deck%setup%impactor%is_present .and. old%setup%impactor%is_present
@@ -131,24 +138,8 @@ contains
     end associate
   end function has_same_contact
 
-  !> States that cannot be mapped.
-  pure function mapping_objection(deck, old) result(objection)
-    !> The deck, with the plate and the damage of the other run, and the deck of that
-    type(deck_t), intent(in) :: deck, old
-    !> One clause; empty: nothing
-    character(len=:), allocatable :: objection
-
-    objection = ''
-    if (deck%setup%ply_damage%is_present .and. .not. deck%setup%has_crack_bands()) &
-      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) fail '// &
-                  'at once, so that their state cannot be averaged; give '// &
-                  trim(merge('the same &mesh in both decks', 'these energies              ', &
-                             has_same_length(deck, old)))
-  end function mapping_objection
-
   !> First difference of stringers. They are not cut.
   pure function stringer_objection(deck, old) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
@@ -172,7 +163,6 @@ contains
 
   !> First difference of plies and materials.
   function laminate_objection(deck, old) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
@@ -182,22 +172,14 @@ contains
       if (objection == '') objection = list_objection('&laminate thicknesses', mine%thickness, its%thickness)
       if (objection == '') objection = material_objection(deck, old, mine%material, its%material, '')
       if (objection == '' .and. mine%shear_correction /= its%shear_correction) &
-        objection = both('&laminate shear_correction', correction_name(mine), correction_name(its))
+        objection = both('&laminate shear_correction', &
+                         trim(merge('''energy''', '''5/6''   ', mine%shear_correction == shear_energy)), &
+                         trim(merge('''energy''', '''5/6''   ', its%shear_correction == shear_energy)))
     end associate
   end function laminate_objection
 
-  !> Name of the reduction of the transverse shear stiffness.
-  pure function correction_name(laminate) result(name)
-    type(laminate_t), intent(in) :: laminate
-    !> As the deck has it
-    character(len=:), allocatable :: name
-
-    name = trim(merge('''energy''', '''5/6''   ', laminate%shear_correction == shear_energy))
-  end function correction_name
-
   !> First difference of ply damage.
   function damage_objection(deck, old) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
@@ -205,33 +187,20 @@ contains
     integer :: i
 
     objection = ''
-    if (deck%setup%ply_damage%is_present .neqv. old%setup%ply_damage%is_present) then
-      objection = both('&ply_damage', given(deck%setup%ply_damage%is_present), given(old%setup%ply_damage%is_present))
-      return
-    end if
-    if (.not. deck%setup%ply_damage%is_present) return
+    if (deck%setup%ply_damage%is_present .neqv. old%setup%ply_damage%is_present) &
+      objection = both('&ply_damage', trim(merge('given   ', 'left out', deck%setup%ply_damage%is_present)), &
+                       trim(merge('given   ', 'left out', old%setup%ply_damage%is_present)))
+    if (objection /= '' .or. .not. deck%setup%ply_damage%is_present) return
     here = numbers_of(deck%setup%ply_damage)
     there = numbers_of(old%setup%ply_damage)
     i = findloc(differ(here, there), .true., dim=1)
     if (i > 0) objection = both('&ply_damage '//trim(damage_names(i)), &
                                 value_in(deck, ply_damage_group, trim(damage_names(i)), here(i)), &
                                 value_in(old, ply_damage_group, trim(damage_names(i)), there(i)))
-
-  contains
-
-    !> Presence of a group in words.
-    pure function given(is_given) result(word)
-      !> True: the group is given
-      logical, intent(in) :: is_given
-      character(len=:), allocatable :: word
-
-      word = trim(merge('given   ', 'left out', is_given))
-    end function given
   end function damage_objection
 
   !> First difference of interfaces.
   function interface_objection(deck, old) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
@@ -263,7 +232,6 @@ contains
   !> Objection to a fixed zone that does not contain that of the other run; each zone is centred on the point that is
   !> struck in its own run.
   function zone_objection(deck, old, mine, its) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> The interface, and that of the other run
     type(delamination_t), intent(in) :: mine, its
@@ -289,19 +257,11 @@ contains
     type(delamination_t), intent(in) :: mine, its
 
     has_other_starter = .false.
-    if (.not. (mine%starter > 0 .or. mine%starter_strip(1) < mine%starter_strip(2))) return
+    if (.not. (mine%starter > 0 .or. mine%has_strip())) return
     has_other_starter = (mine%starter_round .neqv. its%starter_round) .or. &
-                        any(differ(starter_of(mine), starter_of(its)))
+                        any(differ([mine%starter, mine%starter_at, mine%starter_strip], &
+                                   [its%starter, its%starter_at, its%starter_strip]))
   end function has_other_starter
-
-  !> Size of a starter, its centre, and its strip.
-  pure function starter_of(delamination) result(numbers)
-    type(delamination_t), intent(in) :: delamination
-    !> Side or diameter, centre along x and y, first and last x of a strip
-    real(wp) :: numbers(5)
-
-    numbers = [delamination%starter, delamination%starter_at, delamination%starter_strip]
-  end function starter_of
 
   !> A starter as text.
   pure function starter_list(delamination) result(list)
@@ -310,7 +270,7 @@ contains
     character(len=:), allocatable :: list
 
     list = 'none'
-    if (delamination%starter_strip(1) < delamination%starter_strip(2)) then
+    if (delamination%has_strip()) then
       list = short_list(delamination%starter_strip)
     else if (delamination%starter > 0) then
       list = short_list([delamination%starter])//trim(merge(' round ', ' square', delamination%starter_round))// &
@@ -318,19 +278,8 @@ contains
     end if
   end function starter_list
 
-  !> Name of the strains.
-  pure function strains_name(kinematics) result(name)
-    !> kinematics_von_karman or kinematics_linear
-    integer, intent(in) :: kinematics
-    !> As the deck has it
-    character(len=:), allocatable :: name
-
-    name = trim(merge('''linear''    ', '''von_karman''', kinematics == kinematics_linear))
-  end function strains_name
-
   !> True if the mesh has the same lines along one direction.
   pure logical function has_same_lines(deck, old, direction) result(same)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> 1: along x, 2: along y
     integer, intent(in) :: direction
@@ -344,17 +293,6 @@ contains
     if (halved_before(direction) .and. .not. halved(direction)) there = there%with_image()
     same = here%is_equal(there, rounding*deck%setup%plate%length(direction))
   end function has_same_lines
-
-  !> Name of a part of the plate.
-  pure function part_name(symmetry) result(name)
-    integer, intent(in) :: symmetry
-    !> As the deck has it
-    character(len=:), allocatable :: name
-    character(len=*), parameter :: names(symmetry_none:symmetry_point) = &
-      [character(len=7) :: 'none', 'quarter', 'half_x', 'half_y', 'point']
-
-    name = ''''//trim(names(symmetry))//''''
-  end function part_name
 
   !> A value as a deck has it: a word of a choice, a logical value, or a number.
   function value_in(deck, group, key, number, place) result(shown)

@@ -31,7 +31,6 @@ contains
       if (deck%has_time) softening = softening_part(deck)
       if (softening /= '') then
         call deck%settings%derive(time_group, key_integrator, 'central_difference', .true.)
-        if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
         call append(deck%reasons, 'Integrator central_difference: '//softening//' soften; &time integrator='// &
                     '''generalized_alpha'' selects implicit steps.')
       else

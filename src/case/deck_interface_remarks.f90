@@ -9,7 +9,7 @@ module deck_interface_remarks
   use delamination_deck, only: key_zone
   use interface_places, only: delamination_group, key_below_ply
   use kinds, only: wp
-  use material_parameters, only: material_t, first_alike
+  use material_parameters, only: first_alike
   use short_numbers, only: short_text
   use text, only: to_text
   implicit none
@@ -38,7 +38,8 @@ contains
           call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies on both sides of the '// &
                       'interface below ply '//to_text(d%below_ply)//' are of one material and angle, and act as '// &
                       'one thick ply; impacts delaminate plies of different angles.', d%group)
-        beyond(i) = any(beyond_core(deck, d%zone)) .and. .not. d%is_adaptive
+        beyond(i) = deck%setup%mesh%cell > 0 .and. .not. d%is_adaptive .and. &
+                    any(d%zone/2 >= deck%setup%mesh%core/2 + deck%setup%mesh%cell)
         ! All interfaces of a group have one zone.
         if (beyond(i) .and. .not. any(beyond(:i - 1) .and. groups(:i - 1) == d%group)) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
@@ -59,17 +60,11 @@ contains
       within = first_alike(deck%setup%materials, laminate%material(ply)) == &
                first_alike(deck%setup%materials, laminate%material(ply + 1))
       if (within) within = is_parallel(laminate%angle(ply) - laminate%angle(ply + 1)) .and. &
-                           .not. is_isotropic(deck%setup%materials(laminate%material(ply))) .and. &
+                           abs(deck%setup%materials(laminate%material(ply))%e1 - &
+                               deck%setup%materials(laminate%material(ply))%e2) > 0 .and. &
                            .not. all(is_parallel(laminate%angle - laminate%angle(ply)))
     end associate
   end function lies_within_a_block
-
-  !> True for a material without a direction.
-  pure logical function is_isotropic(material)
-    type(material_t), intent(in) :: material
-
-    is_isotropic = .not. (material%e1 < material%e2 .or. material%e1 > material%e2)
-  end function is_isotropic
 
   !> True for a difference of two angles whose fibres are parallel.
   elemental logical function is_parallel(difference)
@@ -78,17 +73,6 @@ contains
 
     is_parallel = abs(difference - 180*anint(difference/180)) < same
   end function is_parallel
-
-  !> True for directions in which a zone extends at least one cell beyond the core; false without a core.
-  pure function beyond_core(deck, zone) result(beyond)
-    type(deck_t), intent(in) :: deck
-    !> Full extents of the zone
-    real(wp), intent(in) :: zone(2)
-    !> Along x and y
-    logical :: beyond(2)
-
-    beyond = deck%setup%mesh%cell > 0 .and. zone/2 >= deck%setup%mesh%core/2 + deck%setup%mesh%cell
-  end function beyond_core
 
   !> Longest side of the cells of a zone.
   pure real(wp) function longest_cell(deck, zone) result(longest)

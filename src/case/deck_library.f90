@@ -11,7 +11,7 @@ module deck_library
   use material_deck, only: key_library, material_group
   use material_library, only: library_value_t, library_values
   use text, only: lower_case, to_text
-  use unit_systems, only: decades_of, of_density, of_pressure, of_toughness, systems
+  use unit_systems, only: decades_of, of_density, of_pressure, of_toughness, system_named
   implicit none
   private
   public :: take_library
@@ -25,15 +25,16 @@ contains
     !> A fault is added if the deck's units are not known
     type(problems_t), intent(inout) :: problems
     type(vocabulary_t) :: vocabulary
-    integer :: place, system
+    integer :: place, system, first
 
-    if (.not. any([(settings%is_known(material_group, key_library, place), &
-                    place=1, settings%groups_named(material_group))])) return
-    system = system_of(settings)
+    first = findloc([(settings%is_known(material_group, key_library, place), &
+                      place=1, settings%groups_named(material_group))], .true., dim=1)
+    if (first == 0) return
+    system = system_named(settings%text_of(case_group, key_units))
     if (system == 0) then
       if (are_clear(settings, problems, case_group, key_units)) call report(settings, problems, material_group, &
         key_library, 'the values are known in SI; give the units of the deck by '//key_units//' of &'// &
-        case_group//'.', first_with_library(settings))
+        case_group//'.', first)
       ! Reported once; values are filled in with an arbitrary system, so that no check reports them as missing.
       system = 1
     end if
@@ -51,25 +52,6 @@ contains
                         settings)
     end do
   end subroutine take_library
-
-  !> Index of the deck's system of units; 0: not given.
-  pure integer function system_of(settings) result(system)
-    type(settings_t), intent(in) :: settings
-
-    do system = size(systems), 1, -1
-      if (lower_case(trim(systems(system))) == lower_case(settings%text_of(case_group, key_units))) return
-    end do
-  end function system_of
-
-  !> First material that has the key.
-  pure integer function first_with_library(settings) result(place)
-    !> Keys in effect, with one at least
-    type(settings_t), intent(in) :: settings
-
-    do place = 1, settings%groups_named(material_group) - 1
-      if (settings%is_known(material_group, key_library, place)) return
-    end do
-  end function first_with_library
 
   !> True if all materials of the deck are the same published one.
   pure logical function is_one_material(settings)

@@ -6,7 +6,6 @@ module deck_line_conflicts
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: report
-  use kinds, only: wp
   use line_deck, only: line_group, key_at, key_layer
   use line_loads, only: line_load_t, along_x, all_layers
   use mesh_parameters, only: is_halved
@@ -36,7 +35,11 @@ contains
       do earlier = 1, line - 1
         if (.not. meet(deck%setup%lines(line), deck%setup%lines(earlier))) cycle
         if (deck%setup%lines(line)%direction /= deck%setup%lines(earlier)%direction) then
-          if (move_alike(deck%setup%lines(line), deck%setup%lines(earlier))) cycle
+          ! Lines with the same motion may both hold the node where they cross.
+          associate (one => deck%setup%lines(line), other => deck%setup%lines(earlier))
+            if (max(abs(one%value - other%value), abs(one%rise - other%rise)) <= 0 .and. &
+                (one%history == other%history .or. .not. abs(one%value) > 0)) cycle
+          end associate
         else if (node_of(deck, deck%setup%lines(line)) /= node_of(deck, deck%setup%lines(earlier))) then
           cycle
         end if
@@ -86,14 +89,4 @@ contains
     meet = one%prescribed .and. other%prescribed .and. one%component == other%component .and. &
            (one%layer == other%layer .or. one%layer == all_layers .or. other%layer == all_layers)
   end function meet
-
-  !> True: two lines have the same motion, so that both may hold the node where they cross.
-  pure logical function move_alike(one, other) result(alike)
-    !> The lines
-    type(line_load_t), intent(in) :: one, other
-    real(wp) :: difference
-
-    difference = max(abs(one%value - other%value), abs(one%rise - other%rise))
-    alike = .not. difference > 0 .and. (one%history == other%history .or. .not. abs(one%value) > 0)
-  end function move_alike
 end module deck_line_conflicts

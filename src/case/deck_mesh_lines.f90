@@ -176,14 +176,16 @@ contains
     subroutine take(zone, group)
       class(ply_zone_t), intent(inout) :: zone
       character(len=*), intent(in) :: group
+      real(wp), allocatable :: others(:)
       real(wp) :: edges(2), moved(2)
       integer :: k
 
       associate (mesh => deck%setup%mesh, half => deck%setup%plate%length(direction)/2)
         edges = zone%edges(direction)
+        others = [mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2, -half, half, lines]
         do k = 1, 2
-          moved(k) = nearest_line([mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2, -half, half, lines], &
-                                  edges(k), merging_distance*2*half)
+          moved(k) = others(minloc(abs(others - edges(k)), dim=1))
+          if (abs(moved(k) - edges(k)) > merging_distance*2*half) moved(k) = edges(k)
           if (abs(moved(k) - edges(k)) > rounding*half) &
             call remark(deck%settings, problems, group, key_zone_size, 'the edge at '// &
                         merge('x', 'y', direction == 1)//' = '//to_text(edges(k))//' nearly coincides with another '// &
@@ -202,16 +204,6 @@ contains
       call add_lines(lines, moved)
     end subroutine take
   end subroutine take_zone_lines
-
-  !> The line nearest to a coordinate; the coordinate itself if there is none within a distance.
-  pure real(wp) function nearest_line(lines, at, distance) result(line)
-    real(wp), intent(in) :: lines(:)
-    !> The coordinate, and the distance
-    real(wp), intent(in) :: at, distance
-
-    line = lines(minloc(abs(lines - at), dim=1))
-    if (abs(line - at) > distance) line = at
-  end function nearest_line
 
   !> Reports windows and requested lines without a line in the mesh, because all are used by the patch or by other
   !> windows.
@@ -269,6 +261,7 @@ contains
                     'the patch off the edge.', i)
     end subroutine check
   end subroutine check_zone_lines
+
   !> Reports stringers without a line in the mesh.
   subroutine check_stringer_lines(deck, problems)
     !> The deck, filled and checked

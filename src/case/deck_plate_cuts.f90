@@ -15,7 +15,6 @@ contains
 
   !> True if nothing is cut from the other run's plate.
   pure logical function has_same_length(deck, old) result(same)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     type(plate_cut_t) :: cut
 
@@ -25,7 +24,6 @@ contains
 
   !> Objection to a plate of another length: it has to be cut from that of the other run.
   function cut_objection(deck, old) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: none
     character(len=:), allocatable :: objection
@@ -58,7 +56,6 @@ contains
 
   !> Distance along x and y of the centres of zones in both runs: zones are centred on the struck points.
   pure function moved_centre(deck, old) result(distance)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> Along x and y
     real(wp) :: distance(2)

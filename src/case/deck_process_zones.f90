@@ -95,16 +95,14 @@ contains
     real(wp) :: least
     integer :: ply
 
-    if (deck%setup%ply_damage%is_present) then
-      plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
-      least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%setup%materials, &
-                                                             deck%setup%ply_damage)), &
-                       ply=delamination%below_ply, delamination%below_ply + 1)])
-      if (least < delamination%strength_shear) return
-      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, &
-        'has no effect below ply '//to_text(delamination%below_ply)//', where the shear strength of the plies '// &
-        'exceeds that of the interface.', delamination%group)
-    end if
+    if (.not. deck%setup%ply_damage%is_present) return
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%setup%materials, deck%setup%ply_damage)), &
+                     ply=delamination%below_ply, delamination%below_ply + 1)])
+    if (least < delamination%strength_shear) return
+    call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect below ply '// &
+                     to_text(delamination%below_ply)//', where the shear strength of the plies exceeds that of the '// &
+                     'interface.', delamination%group)
   end subroutine remark_shear_cracks
 
   !> Length of the shortest process zone of shear of the interfaces that grow by energy; 0: there are none. The mesh
@@ -160,7 +158,7 @@ contains
       cells(direction) = line%longest_within(extents(direction))
     end do
     zone%cell = maxval(cells)
-    if (has_strip(delamination)) zone%cell = cells(1)
+    if (delamination%has_strip()) zone%cell = cells(1)
   end function process_zone
 
   !> Longest side of the cells in doublers.
@@ -181,13 +179,6 @@ contains
     end do
   end function longest_in_doublers
 
-  !> True for a starter across the full width. Its front runs along y and advances along x.
-  pure logical function has_strip(delamination)
-    type(delamination_t), intent(in) :: delamination
-
-    has_strip = delamination%starter_strip(1) < delamination%starter_strip(2)
-  end function has_strip
-
   !> Data of the process zone of an interface, without cells.
   pure function zone_of_any_cells(deck, delamination) result(zone)
     type(deck_t), intent(in) :: deck
@@ -207,7 +198,7 @@ contains
     zone%thickness = thickness_of(layer)
     bending = bending_moduli(layer)
     zone%modulus = largest_modulus(bending)
-    if (has_strip(delamination)) zone%modulus = bending(1)
+    if (delamination%has_strip()) zone%modulus = bending(1)
     toughness = toughnesses(delamination)
     zone%toughness_opening = toughness(1)
     zone%toughness_shear = toughness(2)
@@ -216,7 +207,7 @@ contains
     zone%is_pulled = .not. deck%setup%impactor%is_present
     zone%by_energy = grows_by_energy(deck, delamination)
     zone%is_implicit_specimen = zone%is_pulled .and. .not. (deck%has_time .and. is_explicit(deck%stepping)) .and. &
-                                (delamination%starter > 0 .or. has_strip(delamination))
+                                (delamination%starter > 0 .or. delamination%has_strip())
   end function zone_of_any_cells
 
   !> Plies through the thickness where an interface is: those of the laminate, and for a bond those of its thinnest

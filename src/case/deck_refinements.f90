@@ -3,7 +3,7 @@ module deck_refinements
   use case_deck, only: case_group, key_refine
   use deck_contents, only: deck_t
   use stepping_parameters, only: is_explicit
-  use text, only: line_t, append, counted, lower_case, to_text
+  use text, only: append, counted, lower_case, to_text
   implicit none
   private
   public :: refine, refined_text
@@ -33,7 +33,6 @@ contains
     deck%stepping%central%longest = deck%stepping%central%longest/parts
     deck%stepping%adapt%tolerance = deck%stepping%adapt%tolerance/parts**3
     deck%setup%loading%steps = parts*deck%setup%loading%steps
-    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     call append(deck%reasons, 'Refined '//counted(to_text(deck%case%refine), 'time')//': '// &
                 to_text(deck%setup%mesh%elements(1))//' x '//to_text(deck%setup%mesh%elements(2))//' elements'// &
                 steps_of(deck)//'.')

@@ -57,22 +57,13 @@ contains
       call check_accuracy(deck, problems)
     end if
     deck%expected%scales = scales
-    if (deck%has_time .and. is_explicit(deck%stepping)) call check_settling(deck, scales%first_period, problems)
-  end subroutine check_scales
-
-  !> Warns of a damping too short for the first bending mode.
-  subroutine check_settling(deck, period, problems)
-    type(deck_t), intent(in) :: deck
-    !> Period of this mode; 0: not known
-    real(wp), intent(in) :: period
-    type(problems_t), intent(inout) :: problems
-
-    associate (duration => deck%stepping%central%settle)
-      if (duration > 0 .and. duration < min_periods*period) call remark(deck%settings, problems, time_group, &
-        key_settle, 'is too short to bring the plate to rest: give at least '//short_text(min_periods*period)// &
-        ', '//short_text(min_periods)//' periods of the first bending mode.')
+    if (.not. (deck%has_time .and. is_explicit(deck%stepping))) return
+    associate (duration => deck%stepping%central%settle, least => min_periods*scales%first_period)
+      if (duration > 0 .and. duration < least) call remark(deck%settings, problems, time_group, key_settle, &
+        'is too short to bring the plate to rest: give at least '//short_text(least)//', '// &
+        short_text(min_periods)//' periods of the first bending mode.')
     end associate
-  end subroutine check_settling
+  end subroutine check_scales
 
   !> Warns of a step, a mesh and a patch that do not resolve the impact.
   subroutine check_resolution(deck, problems)

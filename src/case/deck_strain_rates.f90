@@ -1,6 +1,7 @@
 !> Matrix strengths by the strain rate: checks of their keys, and the rate that an impact is expected to have.
 module deck_strain_rates
   use deck_contents, only: deck_t
+  use deck_fibre_strengths, only: belongs_to_softening
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, remark, report
   use kinds, only: wp
@@ -26,8 +27,7 @@ contains
       associate (s => deck%settings, material => deck%setup%materials(place))
         if (.not. material%rate_gain > 0) cycle
         if (.not. softens) then
-          call report(s, problems, material_group, key_gain, 'belongs to plies with fracture energies; give G_ft, '// &
-                      'G_fc, G_mt and G_mc of every material, or leave it out.', place)
+          call report(s, problems, material_group, key_gain, belongs_to_softening, place)
         else if (.not. material%reference_rate > 0) then
           if (are_clear(s, problems, material_group, key_rate, place)) &
             call report(s, problems, material_group, key_gain, 'needs '//key_rate//', the strain rate of the tests '// &

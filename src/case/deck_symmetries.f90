@@ -5,7 +5,7 @@ module deck_symmetries
   use deck_zones, only: zones_are_symmetric
   use deck_remarks, only: report, are_clear
   use delamination_deck, only: key_starter_at, key_strip
-  use delamination_parameters, only: delamination_t, law_front
+  use delamination_parameters, only: law_front
   use impactor_deck, only: impactor_group, key_at
   use interface_places, only: delamination_group
   use kinds, only: wp
@@ -67,7 +67,8 @@ contains
           .not. problems%concern(stringer_group)) &
         call report(s, problems, stringer_group, key_stringer_at, 'a stringer has no image under symmetry = '// &
                     name//'; give all stringers of the full plate, or use ''none''.')
-      if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
+      if (symmetry == symmetry_point .and. any(deck%setup%delaminations%law == law_front)) &
+        call report(s, problems, plate_group, key_symmetry, &
         'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
         if (any(deck%setup%lines%direction == along_x .or. .not. deck%setup%lines%at > 0)) &
@@ -83,8 +84,10 @@ contains
     !> Name of the symmetry, in quotes
     character(len=*), intent(in) :: name
     type(problems_t), intent(inout) :: problems
+    logical :: halved(2), eccentric
     integer :: i
 
+    halved = is_halved(deck%setup%plate%symmetry)
     do i = 1, size(deck%setup%delaminations)
       if (i > 1) then
         if (deck%setup%delaminations(i)%group == deck%setup%delaminations(i - 1)%group) cycle
@@ -94,24 +97,16 @@ contains
         call report(deck%settings, problems, delamination_group, key_starter_at, &
                     'the starter is not on the lines '// &
                   'of symmetry = '//name//'; use ''none''.', deck%setup%delaminations(i)%group)
-      if (strip_is_eccentric(deck%setup%delaminations(i), deck%setup%plate%symmetry) .and. &
+      associate (strip => deck%setup%delaminations(i)%starter_strip)
+        eccentric = halved(1) .and. abs(sum(strip)) > same_place*maxval(abs(strip))
+      end associate
+      if (eccentric .and. &
           are_clear(deck%settings, problems, delamination_group, key_strip, deck%setup%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_strip, 'the strip is not its own image under '// &
                     'symmetry = '//name//'; give two x of equal size and opposite sign, or use ''none''.', &
                     deck%setup%delaminations(i)%group)
     end do
   end subroutine check_starters
-
-  !> True if a starter across the width of its zone has an image beside it.
-  pure logical function strip_is_eccentric(delamination, symmetry) result(eccentric)
-    type(delamination_t), intent(in) :: delamination
-    integer, intent(in) :: symmetry
-    logical :: halved(2)
-
-    halved = is_halved(symmetry)
-    eccentric = halved(1) .and. abs(sum(delamination%starter_strip)) > &
-                same_place*maxval(abs(delamination%starter_strip))
-  end function strip_is_eccentric
 
   !> True if a point is not on a line of symmetry.
   pure logical function is_eccentric(point, symmetry)
@@ -168,7 +163,8 @@ contains
 
     alike = deck%setup%plate%edges([1, 3]) == deck%setup%plate%edges([2, 4])
     ! Lines and strips may have no images.
-    suits = size(deck%setup%lines) == 0 .and. .not. any_strip(deck) .and. &
+    suits = size(deck%setup%lines) == 0 .and. &
+            .not. any([(deck%setup%delaminations(i)%has_strip(), i=1, size(deck%setup%delaminations))]) .and. &
             .not. any([(is_eccentric(deck%setup%delaminations(i)%starter_at, symmetry), &
                         i=1, size(deck%setup%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
@@ -177,7 +173,7 @@ contains
             has_symmetric_imperfection(deck%setup%plate, symmetry) .and. has_zone_images(deck, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
-      suits = .not. any_front(deck)
+      suits = .not. any(deck%setup%delaminations%law == law_front)
     else
       suits = .not. is_coupled(deck)
     end if
@@ -195,22 +191,6 @@ contains
     if (mirrored(2)) alike = alike .and. zones_are_symmetric(deck, [1, -1])
     if (symmetry == symmetry_point) alike = alike .and. zones_are_symmetric(deck, [-1, -1])
   end function has_zone_images
-
-  !> True if a front releases ties of some interface.
-  pure logical function any_front(deck)
-    type(deck_t), intent(in) :: deck
-
-    any_front = any(deck%setup%delaminations%law == law_front)
-  end function any_front
-
-  !> True if the starter of some interface is a strip.
-  pure logical function any_strip(deck)
-    type(deck_t), intent(in) :: deck
-    integer :: i
-
-    any_strip = any([(deck%setup%delaminations(i)%starter_strip(1) < deck%setup%delaminations(i)%starter_strip(2), &
-                      i=1, size(deck%setup%delaminations))])
-  end function any_strip
 
   !> True if each clamp has its images in the rig; windows lie at the centre.
   pure logical function supports_are_symmetric(deck, symmetry) result(alike)
@@ -234,7 +214,6 @@ contains
 
     !> True if the image of each clamp is a clamp.
     pure logical function have_images(signs)
-      !> Signs of x and y of the image
       integer, intent(in) :: signs(2)
       integer :: j, k
 

@@ -125,35 +125,24 @@ contains
     type(deck_t), intent(in) :: deck
     !> Its values
     type(magnitude_t), intent(in) :: list(:)
-    integer :: odd(size(systems)), present_kinds, i
+    logical :: odd(quantities)
+    integer :: number(size(systems)), present_kinds, kind, i, k
 
     system = system_named(deck%case%units)
     if (system > 0) return
     present_kinds = count([(any(list%quantity == i), i=1, quantities)])
     do i = 1, size(systems)
-      odd(i) = unusual_kinds(list, i)
+      odd = [(any([(list(k)%quantity == kind .and. is_unusual(list(k)%quantity, list(k)%value, i), &
+                    k=1, size(list))]), kind=1, quantities)]
+      ! Lengths of all kinds count as one.
+      odd(of_length) = odd(of_length) .or. odd(of_thickness) .or. odd(of_radius)
+      odd([of_thickness, of_radius]) = .false.
+      number(i) = count(odd)
     end do
-    system = minloc(odd, 1)
+    system = minloc(number, 1)
     ! Without an impactor there are too few values to determine the system, and plates of unit density are common.
-    if (2*odd(system) > present_kinds .or. .not. deck%setup%impactor%is_present) system = 0
+    if (2*number(system) > present_kinds .or. .not. deck%setup%impactor%is_present) system = 0
   end function probable_system
-
-  !> Number of kinds of quantities with an unusual value; lengths of all kinds count as one.
-  pure integer function unusual_kinds(list, system) result(number)
-    !> Values of the deck
-    type(magnitude_t), intent(in) :: list(:)
-    integer, intent(in) :: system
-    logical :: odd(quantities)
-    integer :: i
-
-    odd = .false.
-    do i = 1, size(list)
-      if (is_unusual(list(i)%quantity, list(i)%value, system)) odd(list(i)%quantity) = .true.
-    end do
-    odd(of_length) = odd(of_length) .or. odd(of_thickness) .or. odd(of_radius)
-    odd([of_thickness, of_radius]) = .false.
-    number = count(odd)
-  end function unusual_kinds
 
   !> Checks the end of the run against the expected events.
   subroutine check_times(deck, system, problems)

@@ -1,7 +1,7 @@
 !> Checks of doublers and ply drops with other groups: interfaces, frames, patch and symmetry, and their comparison with
 !> those of another deck.
 module deck_zones
-  use deck_comparisons, only: both, differ, integer_list, list_objection, material_objection, short_list
+  use deck_comparisons, only: both, differ, list_objection, material_objection, short_list
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, report
@@ -119,7 +119,6 @@ contains
   !> True if the image of each zone is a zone with the same plies.
   pure logical function zones_are_symmetric(deck, signs) result(alike)
     type(deck_t), intent(in) :: deck
-    !> Signs of x and y of the image
     integer, intent(in) :: signs(2)
     integer :: i, k
 
@@ -147,7 +146,6 @@ contains
   pure logical function is_image(zone, other, signs, length) result(alike)
     !> The zone, and the other one
     class(ply_zone_t), intent(in) :: zone, other
-    !> Signs of x and y of the image
     integer, intent(in) :: signs(2)
     !> Of the plate
     real(wp), intent(in) :: length
@@ -179,7 +177,6 @@ contains
 
   !> First difference of the zones of two decks.
   function zone_objection(deck, old) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
@@ -203,7 +200,8 @@ contains
       associate (mine => deck%setup%zones%drops(i), its => old%setup%zones%drops(i))
         objection = place_objection('&ply_drop '//to_text(i), mine, its, deck%setup%initial%cut_at)
         if (objection == '' .and. .not. have_same_drops(mine, its)) &
-          objection = both('plies of &ply_drop '//to_text(i), integer_list(mine%plies), integer_list(its%plies))
+          objection = both('plies of &ply_drop '//to_text(i), short_list(real(mine%plies, wp)), &
+                           short_list(real(its%plies, wp)))
       end associate
     end do
   end function zone_objection
@@ -240,7 +238,6 @@ contains
 
   !> First difference of the plies of a doubler in two decks.
   function plies_objection(deck, old, i) result(objection)
-    !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> The doubler
     integer, intent(in) :: i
@@ -250,9 +247,13 @@ contains
     objection = ''
     associate (mine => deck%setup%zones%doublers(i), its => old%setup%zones%doublers(i))
       if (mine%is_cohesive .neqv. its%is_cohesive) then
-        objection = both('bond of &doubler '''//mine%name//'''', bond_name(mine), bond_name(its))
+        objection = both('bond of &doubler '''//mine%name//'''', &
+                         trim(merge('cohesive', 'rigid   ', mine%is_cohesive)), &
+                         trim(merge('cohesive', 'rigid   ', its%is_cohesive)))
       else if (mine%face /= its%face) then
-        objection = both('face of &doubler '''//mine%name//'''', face_name(mine%face), face_name(its%face))
+        objection = both('face of &doubler '''//mine%name//'''', &
+                         trim(merge('''back'' ', '''front''', mine%face == back_face)), &
+                         trim(merge('''back'' ', '''front''', its%face == back_face)))
       end if
       if (objection == '') objection = list_objection('plies of &doubler '''//mine%name//'''', mine%laminate%angle, &
                                                       its%laminate%angle)

@@ -119,13 +119,17 @@ contains
     !> True for the doublers and ply drops that it has
     logical, intent(in) :: here(:)
     type(setup_t) :: setup
+    type(cell_line_t) :: line
     integer :: i
 
     setup%materials = deck%setup%materials
     setup%laminate = deck%setup%laminate
     setup%zones = deck%setup%zones%everywhere(here)
     setup%delaminations = deck%setup%delaminations
-    setup%plate%length = cells*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
+    do i = 1, 2
+      line = cells_along(deck%setup%plate, deck%setup%mesh, i)
+      setup%plate%length(i) = cells*minval(line%sides())
+    end do
     setup%plate%edges = edge_free
     setup%plate%symmetry = symmetry_none
     setup%mesh = mesh_t(elements=cells, grading=1, shear=deck%setup%mesh%shear, mass=deck%setup%mesh%mass, &
@@ -140,14 +144,4 @@ contains
       end associate
     end do
   end function small_setup
-
-  !> Shortest side of elements along a direction.
-  pure real(wp) function shortest_edge(deck, direction) result(edge)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: direction
-    type(cell_line_t) :: line
-
-    line = cells_along(deck%setup%plate, deck%setup%mesh, direction)
-    edge = minval(line%sides())
-  end function shortest_edge
 end module element_steps

@@ -32,12 +32,13 @@ contains
     logical :: lengthened
 
     end = expected_end(deck)
-    steps = steps_until(deck, end)
+    steps = end/deck%stepping%time%step*shortened(deck)
     step = end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
     ! Damage lengthens the contact by a time that is known roughly.
-    lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%setup%has_crack_bands())
+    lengthened = deck%stepping%time%extends_to_contact_end .and. &
+                 (any(deck%setup%delaminations%law == law_cohesive) .or. deck%setup%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
     seconds = measured_element_time(deck)
@@ -54,16 +55,8 @@ contains
   real(wp) function expected_steps(deck) result(steps)
     type(deck_t), intent(in) :: deck
 
-    steps = steps_until(deck, expected_end(deck))
+    steps = expected_end(deck)/deck%stepping%time%step*shortened(deck)
   end function expected_steps
-
-  !> Expected number of steps up to a time.
-  real(wp) function steps_until(deck, end) result(steps)
-    type(deck_t), intent(in) :: deck
-    real(wp), intent(in) :: end
-
-    steps = end/deck%stepping%time%step*shortened(deck)
-  end function steps_until
 
   !> Expected end of a run: that of the deck, or later where the run continues until the impactor has left and the plate
   !> is at rest. A contact longer than the deck's end is found by an elastic impact of its own.
@@ -81,13 +74,6 @@ contains
     end = end_of_run(deck%stepping, deck%setup%loading%start + stiffened_duration(deck%setup, deck%expected%scales, &
                                                                          elastic%last_touch, elastic%deflection))
   end function expected_end
-
-  !> True: an interface is cohesive.
-  pure logical function has_cohesive(deck)
-    type(deck_t), intent(in) :: deck
-
-    has_cohesive = any(deck%setup%delaminations%law == law_cohesive)
-  end function has_cohesive
 
   !> Sentence on the step of the deck where it is longer than the step that is used; otherwise empty.
   function untaken_step(deck, step) result(sentence)

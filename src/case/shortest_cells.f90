@@ -192,7 +192,6 @@ contains
 
     !> True if the row has a side at this coordinate within the plate.
     elemental logical function is_side(at)
-      !> The coordinate
       real(wp), intent(in) :: at
 
       associate (length => deck%setup%plate%length(row%direction))

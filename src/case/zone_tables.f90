@@ -34,18 +34,18 @@ contains
                   deck%setup%delaminations%growth_control == growth_by_energy)) return
     if (.not. deck%setup%impactor%is_present) cells(1) = minval(cells)
     if (cells(1) >= resolving_cells) return
-    call append(lines, error_line('error of the load at growth due to these cells (strips)', load_errors(cells(1))))
+    call add('error of the load at growth due to these cells (strips)', load_errors(cells(1)))
     if (deck%setup%impactor%is_present) &
-      call append(lines, error_line('error of the area due to these cells (impacts)', area_errors(cells(1))))
+      call add('error of the area due to these cells (impacts)', area_errors(cells(1)))
+
+  contains
+
+    !> Adds a range of errors, %, or that it is unknown.
+    subroutine add(label, range)
+      !> What it is an error of, and the range
+      character(len=*), intent(in) :: label, range
+
+      call append(lines, table_line(label, range, trim(merge(' ', '%', range == 'unknown'))))
+    end subroutine add
   end function zone_lines
-
-  !> A range of errors, %, or that it is unknown.
-  function error_line(label, range) result(line)
-    !> What it is an error of, and the range
-    character(len=*), intent(in) :: label, range
-    !> A line of the table
-    character(len=:), allocatable :: line
-
-    line = table_line(label, range, trim(merge(' ', '%', range == 'unknown')))
-  end function error_line
 end module zone_tables

@@ -1,7 +1,7 @@
 !> Lists every key in effect and whether it is from the deck, by default or chosen, for the log.
 module deck_echo
   use deck_entries, only: written_values
-  use deck_settings, only: settings_t, setting_t
+  use deck_settings, only: settings_t
   use deck_vocabulary, only: vocabulary_t
   use text, only: line_t, append, to_text
   implicit none
@@ -23,7 +23,13 @@ contains
     allocate (lines(0))
     do i = 1, size(settings%items)
       associate (item => settings%items(i))
-        words = value_in_effect(vocabulary, item)
+        words = written_values(item%values)
+        if (size(item%values) == 0) then
+          ! The meaning of its absence.
+          words = vocabulary%keys(vocabulary%key_index(item%group, item%key))%default
+          if (words == 'none') words = ''
+          if (index(words, '=') == 1) words = words(3:)
+        end if
         if (words == '' .or. item%idle) cycle
         origin = ' [default]'
         if (item%chosen) origin = ' [accuracy]'
@@ -51,21 +57,4 @@ contains
       end associate
     end do
   end function adopted_values
-
-  !> Values of a key as written in a deck, or the meaning of its absence; empty if there is none.
-  pure function value_in_effect(vocabulary, item) result(words)
-    type(vocabulary_t), intent(in) :: vocabulary
-    !> The key
-    type(setting_t), intent(in) :: item
-    !> A value or a word
-    character(len=:), allocatable :: words
-
-    if (size(item%values) > 0) then
-      words = written_values(item%values)
-    else
-      words = vocabulary%keys(vocabulary%key_index(item%group, item%key))%default
-      if (words == 'none') words = ''
-      if (index(words, '=') == 1) words = words(3:)
-    end if
-  end function value_in_effect
 end module deck_echo

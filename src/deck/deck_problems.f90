@@ -93,12 +93,10 @@ contains
     call self%add(.false., line, group, key, message, place)
   end subroutine add_error
 
-  !> Adds a remark on a deck that can run.
+  !> Adds a remark on a deck that can run, with line, group and key as in `add_error`.
   subroutine add_warning(self, line, group, key, message)
     class(problems_t), intent(inout) :: self
-    !> Line of the deck; 0: the deck as a whole
     integer, intent(in) :: line
-    !> Group and key it belongs to; empty if none
     character(len=*), intent(in) :: group, key
     !> Text after `file:line: warning:`
     character(len=*), intent(in) :: message
@@ -106,18 +104,14 @@ contains
     call self%add(.true., line, group, key, message)
   end subroutine add_warning
 
-  !> Adds a fault or remark.
+  !> Adds a fault or remark, with arguments as in `add_error`.
   subroutine add(self, is_warning, line, group, key, message, place)
     class(problems_t), intent(inout) :: self
     !> True: a remark
     logical, intent(in) :: is_warning
-    !> Line of the deck; 0: the deck as a whole
     integer, intent(in) :: line
-    !> Group and key it belongs to; empty if none
     character(len=*), intent(in) :: group, key
-    !> Printed text
     character(len=*), intent(in) :: message
-    !> Index of its group among those of this name; absent: any
     integer, intent(in), optional :: place
     type(problem_t) :: problem
 

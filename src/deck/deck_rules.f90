@@ -7,7 +7,7 @@ module deck_rules
   use deck_settings, only: settings_t, setting_t, present_group_t
   use deck_values, only: fault_of_value, fault_of_count, decimal_commas, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
-  use text, only: line_t, append, ended, joined, lower_case, nearest_name, to_text, words_of
+  use text, only: line_t, ended, joined, lower_case, nearest_name, to_text, words_of
   implicit none
   private
   public :: resolve_settings
@@ -53,6 +53,7 @@ contains
     !> True: its keys are used
     logical, intent(out) :: accepted
     type(present_group_t) :: new
+    character(len=:), allocatable :: nearest
     integer :: index, earlier
 
     accepted = .false.
@@ -60,7 +61,14 @@ contains
       index = vocabulary%group_index(group%name)
       earlier = settings%groups_named(group%name)
       if (index == 0) then
-        call report_unknown_group(group%name, group%line, vocabulary, problems)
+        nearest = nearest_name(group%name, vocabulary%group_names())
+        if (nearest /= '') then
+          call problems%error(group%line, nearest, '', '&'//shown(group%name)// &
+                              ': there is no such group; did you mean &'//nearest//'?')
+        else
+          call problems%error(group%line, '', '', '&'//shown(group%name)//': there is no such group; allowed: '// &
+                              joined(vocabulary%group_names(), ', ')//'.')
+        end if
       else if (earlier > 0 .and. all(vocabulary%groups(index)%presence /= &
                                      [character(len=10) :: 'repeatable', 'several'])) then
         call problems%error(group%line, '', '', '&'//group%name//': the group was already given in line '// &
@@ -76,24 +84,6 @@ contains
       end if
     end associate
   end subroutine check_group
-
-  !> A group that is not in the table.
-  subroutine report_unknown_group(name, line, vocabulary, problems)
-    character(len=*), intent(in) :: name
-    !> Its line
-    integer, intent(in) :: line
-    type(vocabulary_t), intent(in) :: vocabulary
-    type(problems_t), intent(inout) :: problems
-    character(len=:), allocatable :: nearest
-
-    nearest = nearest_name(name, vocabulary%group_names())
-    if (nearest /= '') then
-      call problems%error(line, nearest, '', '&'//shown(name)//': there is no such group; did you mean &'//nearest//'?')
-    else
-      call problems%error(line, '', '', '&'//shown(name)//': there is no such group; allowed: '// &
-                          joined(vocabulary%group_names(), ', ')//'.')
-    end if
-  end subroutine report_unknown_group
 
   !> Checks that a key belongs to its group and is given once.
   subroutine check_key(scan, entry, place, vocabulary, problems)
@@ -206,27 +196,16 @@ contains
           if (setting%valid) call take_spelling(key, setting%values)
         else
           setting%line = settings%line_of_group(group, place)
-          call take_default(key, setting, problems)
+          allocate (setting%values(merge(1, 0, key%has_literal_default())))
+          if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
+          if (key%default == 'required' .and. .not. problems%concern(group, key%name, place)) &
+            call problems%error(setting%line, group, key%name, '&'//group//' '//key%name//' is missing; '// &
+                                ended(allowed_sentence(key)), place)
         end if
         settings%items = [settings%items, setting]
       end associate
     end do
   end subroutine resolve_keys
-
-  !> A key that the deck does not give.
-  subroutine take_default(key, setting, problems)
-    type(key_entry_t), intent(in) :: key
-    !> Gets the default
-    type(setting_t), intent(inout) :: setting
-    type(problems_t), intent(inout) :: problems
-
-    allocate (setting%values(merge(1, 0, key%has_literal_default())))
-    if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
-    if (key%default == 'required' .and. .not. problems%concern(key%group, key%name, setting%place)) then
-      call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
-                          ended(allowed_sentence(key)), setting%place)
-    end if
-  end subroutine take_default
 
   !> Number and values of a given key.
   subroutine check_values(key, place, entry, vocabulary, valid, problems)

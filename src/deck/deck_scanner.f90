@@ -14,6 +14,8 @@ module deck_scanner
 
   !> Largest deck in bytes, and longest line.
   integer, parameter, public :: max_bytes = 1000000, longest_line = 4000
+  !> Bytes that some editors put at the start of a file: the mark of UTF-8.
+  character(len=3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
 
   !> Contents of a deck.
   type :: scan_t
@@ -50,7 +52,7 @@ contains
     call check_characters(content, problems, readable)
     if (.not. readable) return
     call take_plain(content, problems, deck)
-    if (index(deck, byte_order_mark()) == 1) cursor%at = 4
+    if (index(deck, byte_order_mark) == 1) cursor%at = 4
     do while (.not. problems%is_full() .and. scan%values < max_values)
       if (.not. scan%open) then
         call skip_to_group(deck, cursor, unknown_word, unknown_line)
@@ -67,14 +69,6 @@ contains
     if (size(scan%blocks) == 0 .and. problems%errors() == 0) call problems%error(0, '', '', &
       'the deck has no group; it needs at least &plate, &mesh, &material and &laminate.')
   end subroutine scan_deck
-
-  !> Bytes that some editors put at the start of a file.
-  pure function byte_order_mark() result(mark)
-    !> The three bytes of UTF-8's mark
-    character(len=3) :: mark
-
-    mark = char(239)//char(187)//char(191)
-  end function byte_order_mark
 
   !> Whether this is text with lines of a sensible length.
   subroutine check_characters(deck, problems, readable)
@@ -317,5 +311,4 @@ contains
       end if
     end associate
   end subroutine mark_faulty
-
 end module deck_scanner

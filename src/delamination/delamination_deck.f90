@@ -211,6 +211,7 @@ contains
     type(delamination_t), intent(inout) :: delamination
     logical :: is_cohesive
 
+    ! By default it is one where no key of a front is given, and the strengths are known.
     ! Without plies, as their group has errors, only the key of a front decides.
     is_cohesive = .not. needs_front(settings, place) .and. (plies == 0 .or. &
                   (weaker(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
@@ -299,7 +300,7 @@ contains
     if (.not. are_clear(settings, problems, group, key_strip//' '//key_starter, place)) return
     if (settings%is_given(group, key_starter, place)) then
       call report(settings, problems, group, key_strip, 'a starter is a square or a strip; give one of them.', place)
-    else if (.not. delamination%starter_strip(1) < delamination%starter_strip(2)) then
+    else if (.not. delamination%has_strip()) then
       call report(settings, problems, group, key_strip, 'the first x must be smaller than the second.', place)
     end if
   end subroutine check_strip

@@ -94,6 +94,7 @@ module delamination_parameters
     real(wp) :: smoothing = 0
   contains
     procedure :: bonds_doublers
+    procedure :: has_strip
     procedure :: is_on_front
   end type delamination_t
 
@@ -114,6 +115,13 @@ contains
 
     bonds_doublers = allocated(self%doublers)
   end function bonds_doublers
+
+  !> True for a starter across the full width. Its front runs along y and advances along x.
+  pure logical function has_strip(self)
+    class(delamination_t), intent(in) :: self
+
+    has_strip = self%starter_strip(1) < self%starter_strip(2)
+  end function has_strip
 
   !> True for the bond of doublers on the struck face.
   pure logical function is_on_front(self)
@@ -147,6 +155,7 @@ contains
   !> Side of a starter that covers 0.05 % of the plate, as in section 3.3.2 of the paper.
   pure real(wp) function default_starter(length) result(side)
     real(wp), intent(in) :: length(2)
+
     side = sqrt(5.0e-4_wp*product(length))
   end function default_starter
 

@@ -52,7 +52,11 @@ contains
     type(impactor_parameters_t), intent(inout) :: impactor
     type(problems_t), intent(inout) :: problems
 
-    call require_mass(settings, problems)
+    ! An impactor with prescribed travel needs no mass.
+    if (settings%has_group(impactor_group) .and. .not. settings%is_given(impactor_group, key_travel) .and. &
+        .not. settings%is_given(impactor_group, key_mass) .and. &
+        are_clear(settings, problems, impactor_group, key_mass)) &
+      call report(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
     call set_velocity_from_energy(settings, problems)
     impactor%travel = settings%real_of(impactor_group, key_travel)
     impactor%rise = settings%real_of(impactor_group, key_rise)
@@ -90,17 +94,6 @@ contains
       call settings%derive_numbers(impactor_group, key_velocity, [sqrt(2*energy/mass)])
     end if
   end subroutine set_velocity_from_energy
-
-  !> Reports if the mass is missing; an impactor with prescribed travel needs none.
-  subroutine require_mass(settings, problems)
-    type(settings_t), intent(in) :: settings
-    type(problems_t), intent(inout) :: problems
-
-    if (.not. settings%has_group(impactor_group) .or. settings%is_given(impactor_group, key_travel)) return
-    if (.not. settings%is_given(impactor_group, key_mass) .and. &
-        are_clear(settings, problems, impactor_group, key_mass)) &
-      call report(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
-  end subroutine require_mass
 
   !> Names of the keys of the impactor's velocity, separated by blanks.
   pure function keys_of_motion(settings) result(keys)

@@ -159,19 +159,10 @@ contains
                   settings%text_of(indentation_group, 'law')//''' needs the indentation above which a dent remains'// &
                   trim(merge(', or a yield_pressure', '                     ', law%law == law_thornton))// &
                   ' (law = ''hertz'' leaves none).')
-    if (law%law == law_tan_sun) call check_exponents(settings, law, problems)
+    ! A law that creates no energy has 1.5 <= reload <= q; the rows have the lower bound.
+    if (law%law == law_tan_sun .and. law%reload > law%q .and. &
+        are_clear(settings, problems, indentation_group, 'q reload')) &
+      call report(settings, problems, indentation_group, 'reload', 'reloading would require less energy than '// &
+                  'unloading released; allowed: >= 1.5, <= q = '//to_text(law%q)//'.')
   end subroutine check_indentation
-
-  !> Checks the exponents of a law that creates no energy: 1.5 <= reload <= q; the rows have the lower bound.
-  subroutine check_exponents(settings, law, problems)
-    type(settings_t), intent(in) :: settings
-    type(indentation_law_t), intent(in) :: law
-    type(problems_t), intent(inout) :: problems
-
-    if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return
-    if (law%reload > law%q) &
-      call report(settings, problems, indentation_group, 'reload', &
-                  'reloading would require less energy than unloading '// &
-                'released; allowed: >= 1.5, <= q = '//to_text(law%q)//'.')
-  end subroutine check_exponents
 end module indentation_deck

@@ -234,7 +234,6 @@ contains
   !> Line of nodes next to a coordinate, from 0.
   pure integer function nearest_node(self, at) result(node)
     class(cell_line_t), intent(in) :: self
-    !> The coordinate
     real(wp), intent(in) :: at
     integer :: k
 
@@ -289,7 +288,6 @@ contains
   !> Number of cells that end beyond a coordinate.
   pure integer function cells_beyond(self, at) result(cells)
     class(cell_line_t), intent(in) :: self
-    !> The coordinate
     real(wp), intent(in) :: at
 
     cells = count(self%edges > at)
@@ -318,7 +316,6 @@ contains
   !> Distance of a coordinate from the next edge of a cell; 0 below the first one.
   pure real(wp) function distance_of(self, at) result(distance)
     class(cell_line_t), intent(in) :: self
-    !> The coordinate
     real(wp), intent(in) :: at
 
     distance = 0

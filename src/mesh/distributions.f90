@@ -62,7 +62,6 @@ contains
   !> Distributes cells over ranks, weighted by their elements; images of each other are assigned to one rank.
   subroutine partition_cells(mesh, ranks, first, part, error)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Number of ranks
     integer, intent(in) :: ranks
     !> First of the images of each cell, including itself
     integer, intent(in) :: first(:)
@@ -153,7 +152,6 @@ contains
   pure subroutine number_points(owner, ranks, self)
     !> Rank of each point
     integer, intent(in) :: owner(:)
-    !> Number of ranks
     integer, intent(in) :: ranks
     type(distribution_t), intent(inout) :: self
     integer :: next(0:ranks), point, rank

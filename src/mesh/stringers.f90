@@ -97,7 +97,6 @@ contains
   !> True for stringers that are an image of one.
   pure function are_images(stringers, one, signs, distance) result(are)
     type(stringer_t), intent(in) :: stringers(:), one
-    !> Signs of x and y of the image
     integer, intent(in) :: signs(2)
     !> Largest distance from the image
     real(wp), intent(in) :: distance

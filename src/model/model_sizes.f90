@@ -128,7 +128,6 @@ contains
   !> Megabytes that a rank needs.
   pure real(wp) function megabytes_a_rank(self, ranks) result(megabytes)
     class(model_size_t), intent(in) :: self
-    !> Number of ranks
     integer, intent(in) :: ranks
 
     megabytes = megabytes_of_libraries + self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)

@@ -9,7 +9,6 @@ module placed_gauges
   use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
-  use roundings, only: rounding
   use strain_recovery, only: nodal_strains
   implicit none
   private
@@ -149,7 +148,6 @@ contains
   pure real(wp) function part_of(ends, at) result(part)
     !> Ends of the cell
     real(wp), intent(in) :: ends(2)
-    !> The coordinate
     real(wp), intent(in) :: at
 
     part = (at - ends(1))/(ends(2) - ends(1))

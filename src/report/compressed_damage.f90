@@ -86,7 +86,7 @@ contains
     integer, intent(in) :: along, zone
     !> Contribution of this rank
     type(collected_t) :: collected
-    integer :: i, column, row
+    integer :: i, column, row, lines(2)
 
     allocate (collected%rows(plate%mesh%cells(3 - along)), source=0.0_wp)
     associate (mesh => plate%mesh, cohesive => now%interfaces%cohesive)
@@ -96,8 +96,10 @@ contains
           if (plate%zone(i) /= zone .or. .not. cohesive%cohesive(i)) cycle
           if (cohesive%points(i)%damage < 1) cycle
           associate (node => mesh%point_node(plate%distribution%points(i)))
-            call collected%add(plate%interfaces%contact_area(i), abs(mesh%node_coordinates(along, node)), &
-                               row_of(mesh%lines_of(node), along))
+            lines = mesh%lines_of(node)
+            ! Odd lines of nodes are the centre lines of rows of cells; other nodes lie between two rows.
+            row = merge((lines(3 - along) + 1)/2, 0, modulo(lines(3 - along), 2) == 1)
+            call collected%add(plate%interfaces%contact_area(i), abs(mesh%node_coordinates(along, node)), row)
           end associate
         end do
         return
@@ -133,17 +135,6 @@ contains
       end do
     end associate
   end function fibres_failed
-
-  !> Row of cells with a node on its centre line; 0: the node lies between two rows.
-  pure integer function row_of(lines, along) result(row)
-    !> Lines of nodes that cross at the node, from 0
-    integer, intent(in) :: lines(2)
-    !> Axis of the load
-    integer, intent(in) :: along
-
-    row = 0
-    if (modulo(lines(3 - along), 2) == 1) row = (lines(3 - along) + 1)/2
-  end function row_of
 
   !> Adds a failed cell.
   pure subroutine add_cell(collected, plate, along, place)

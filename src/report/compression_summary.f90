@@ -35,7 +35,6 @@ contains
     type(json_t), intent(inout) :: json
     type(run_record_t), intent(in) :: record
     type(run_figures_t), intent(in) :: figures
-    !> Ply above each interface
     integer, intent(in) :: below_plies(:)
     type(compression_failure_t) :: failure
     integer :: i
@@ -88,7 +87,6 @@ contains
   pure function collapse_text(record, figures, below_plies) result(text)
     type(run_record_t), intent(in) :: record
     type(run_figures_t), intent(in) :: figures
-    !> Ply above each interface
     integer, intent(in) :: below_plies(:)
     !> Code, interfaces and plies
     character(len=:), allocatable :: text

@@ -140,7 +140,6 @@ contains
   !> One line for the log.
   pure function line(self, below_plies)
     class(mapped_figures_t), intent(in) :: self
-    !> Ply above each interface
     integer, intent(in) :: below_plies(:)
     !> Before and after
     character(len=:), allocatable :: line
@@ -159,7 +158,6 @@ contains
   !> out.
   pure function cut_line(self, below_plies) result(line)
     class(mapped_figures_t), intent(in) :: self
-    !> Ply above each interface
     integer, intent(in) :: below_plies(:)
     !> Quantities before the cut minus those of the plate that is cut out
     character(len=:), allocatable :: line
@@ -198,7 +196,6 @@ contains
   subroutine put(self, json, below_plies)
     class(mapped_figures_t), intent(in) :: self
     type(json_t), intent(inout) :: json
-    !> Ply above each interface
     integer, intent(in) :: below_plies(:)
     integer :: i
 

@@ -4,7 +4,7 @@ module result_explain
   use field_results, only: field_rows
   use result_rows, only: column_rows
   use result_tables, only: cell, column_heading, column_meaning, column_name, column_unit, field_heading, &
-                           field_meaning, field_name, field_row, field_unit, markdown_table, plain_table
+                           field_meaning, field_row, markdown_table, plain_table
   use summary_rows, only: summary_heading, summary_meaning, summary_table
   use text, only: append, line_t, lower_case
   implicit none
@@ -52,28 +52,28 @@ contains
     character(len=*), intent(in) :: name
     !> The explanation; empty: there is none
     type(line_t), allocatable, intent(out) :: lines(:)
-    integer :: row
 
     allocate (lines(0))
-    row = field_row(column_rows, name)
-    if (row > 0) then
-      call append(lines, 'NAME_history.csv')
-      call append(lines, '  '//cell(column_rows(row), column_name)//': '//cell(column_rows(row), column_meaning))
-      if (cell(column_rows(row), column_unit) /= '-') &
-        call append(lines, '  unit: '//cell(column_rows(row), column_unit))
-    end if
-    row = field_row(summary_table, name)
-    if (row > 0) then
-      call append(lines, 'NAME_summary.json')
-      call append(lines, '  '//cell(summary_table(row), column_name)//': '//cell(summary_table(row), summary_meaning))
-      if (cell(summary_table(row), column_unit) /= '-') &
-        call append(lines, '  unit: '//cell(summary_table(row), column_unit))
-    end if
-    row = field_row(field_rows, name)
-    if (row == 0) return
-    call append(lines, 'NAME.h5')
-    call append(lines, '  '//cell(field_rows(row), field_name)//': '//cell(field_rows(row), field_meaning))
-    if (cell(field_rows(row), field_unit) /= '-') call append(lines, '  unit: '//cell(field_rows(row), field_unit))
+    call find_in('NAME_history.csv', column_rows, column_meaning)
+    call find_in('NAME_summary.json', summary_table, summary_meaning)
+    call find_in('NAME.h5', field_rows, field_meaning)
+
+  contains
+
+    !> Explains the row of one table.
+    subroutine find_in(file, rows, meaning)
+      !> Name of the file, and rows of its table, which begin with name, type or place, and unit
+      character(len=*), intent(in) :: file, rows(:)
+      !> Cell of the meaning
+      integer, intent(in) :: meaning
+      integer :: row
+
+      row = field_row(rows, name)
+      if (row == 0) return
+      call append(lines, file)
+      call append(lines, '  '//cell(rows(row), column_name)//': '//cell(rows(row), meaning))
+      if (cell(rows(row), column_unit) /= '-') call append(lines, '  unit: '//cell(rows(row), column_unit))
+    end subroutine find_in
   end subroutine find_column
 
   !> The columns of the history or the fields over the plate.
@@ -84,27 +84,31 @@ contains
     logical, intent(in) :: markdown
     type(line_t), allocatable, intent(out) :: lines(:)
 
-    if (lower_case(topic) == 'history') then
+    select case (lower_case(topic))
+    case ('history')
+      call print_table('NAME_history.csv has a row for each accepted step, with central differences about 2000 '// &
+                       'rows. Its columns, in their order:', column_heading, column_rows)
+    case ('summary')
+      call print_table('NAME_summary.json has these results, as far as the run has them, and further members:', &
+                       summary_heading, summary_table)
+    case default
+      call print_table('NAME.h5 holds fields over the plate, which NAME.xdmf shows to ParaView. N is the number '// &
+                       'of a ply, choice what `fields` in &output says:', field_heading, field_rows)
+    end select
+
+  contains
+
+    !> One of the tables.
+    subroutine print_table(sentence, heading, rows)
+      !> Sentence above it on the terminal, its heading and rows
+      character(len=*), intent(in) :: sentence, heading, rows(:)
+
       if (markdown) then
-        call markdown_table(column_heading, column_rows, lines)
+        call markdown_table(heading, rows, lines)
       else
-        call append(lines, 'NAME_history.csv has a row for each accepted step, with central differences '// &
-                    'about 2000 rows. Its columns, in their order:')
-        call plain_table(column_heading, column_rows, lines)
+        call append(lines, sentence)
+        call plain_table(heading, rows, lines)
       end if
-    else if (lower_case(topic) == 'summary') then
-      if (markdown) then
-        call markdown_table(summary_heading, summary_table, lines)
-      else
-        call append(lines, 'NAME_summary.json has these results, as far as the run has them, and further members:')
-        call plain_table(summary_heading, summary_table, lines)
-      end if
-    else if (markdown) then
-      call markdown_table(field_heading, field_rows, lines)
-    else
-      call append(lines, 'NAME.h5 holds fields over the plate, which NAME.xdmf shows to ParaView. N is the number '// &
-                         'of a ply, choice what `fields` in &output says:')
-      call plain_table(field_heading, field_rows, lines)
-    end if
+    end subroutine print_table
   end subroutine explain_results
 end module result_explain

@@ -16,13 +16,12 @@ module result_rows
   use ply_columns, only: permanent_rows, permanent_values, ply_rows, ply_values
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
   use run_records, only: run_record_t
-  use step_columns, only: contact_rows, damping_rows, heat_rows, heat_values, iteration_rows, iteration_values, &
+  use step_columns, only: contact_rows, damping_rows, heat_rows, iteration_rows, iteration_values, &
                           ledger_rows, ledger_values, motion_rows, motion_values, step_rows, step_values
-  use states, only: state_t
   use steppers, only: stepper_t
   implicit none
   private
-  public :: column_names, column_whole, row_of
+  public :: list_columns, row_of
 
   !> Warnings of the run.
   character(len=result_row_length), parameter :: limit_rows(*) = [character(len=result_row_length) :: &
@@ -42,30 +41,50 @@ module result_rows
 
 contains
 
-  !> Names of the columns.
-  pure function column_names(deck) result(names)
+  !> Names of the columns, and which are of integers.
+  subroutine list_columns(deck, names, whole)
     type(deck_t), intent(in) :: deck
     !> In the order of the table
-    character(len=result_name_length), allocatable :: names(:)
-    integer :: zone, line, gauge, stringer
+    character(len=result_name_length), allocatable, intent(out) :: names(:)
+    logical, allocatable, intent(out) :: whole(:)
+    integer :: i
 
-    names = pack(names_of(plate_rows), apply_to(deck%setup))
-    do zone = 1, size(deck%setup%delaminations)
-      names = [names, numbered(interface_rows, deck%setup%delaminations(zone)%below_ply)]
+    allocate (names(0), whole(0))
+    call add(pack(plate_rows, apply_to(deck%setup)), 0)
+    do i = 1, size(deck%setup%delaminations)
+      call add(interface_rows, deck%setup%delaminations(i)%below_ply)
     end do
-    if (size(deck%setup%lines) > 0) names = [names, names_of(line_column_rows(:1))]
-    do line = 1, size(deck%setup%lines)
-      names = [names, numbered(line_column_rows(2:), line)]
+    if (size(deck%setup%lines) > 0) call add(line_column_rows(:1), 0)
+    do i = 1, size(deck%setup%lines)
+      call add(line_column_rows(2:), i)
     end do
-    if (has_ends(deck%setup%plate, deck%setup%lines)) names = [names, names_of(end_rows)]
-    do gauge = 1, size(deck%setup%plate%gauges)
-      names = [names, numbered(gauge_column_rows, gauge)]
+    if (has_ends(deck%setup%plate, deck%setup%lines)) call add(end_rows, 0)
+    do i = 1, size(deck%setup%plate%gauges)
+      call add(gauge_column_rows, i)
     end do
-    do stringer = 1, size(deck%setup%stringers)
-      names = [names, numbered(stringer_column_rows, stringer)]
+    do i = 1, size(deck%setup%stringers)
+      call add(stringer_column_rows, i)
     end do
-    if (deck%output%force_filter > 0) names = [names, names_of(filter_rows)]
-  end function column_names
+    if (deck%output%force_filter > 0) call add(filter_rows, 0)
+
+  contains
+
+    !> Adds the columns of some rows.
+    subroutine add(rows, number)
+      !> Rows of the table
+      character(len=*), intent(in) :: rows(:)
+      !> Number for the N in their names
+      integer, intent(in) :: number
+      character(len=result_name_length) :: name
+      integer :: row
+
+      do row = 1, size(rows)
+        name = name_with_number(cell(rows(row), column_name), number)
+        names = [names, name]
+        whole = [whole, cell(rows(row), column_type) /= 'real']
+      end do
+    end subroutine add
+  end subroutine list_columns
 
   !> Which columns of the plate have a meaning under a load: the bending stress around the struck point needs a load
   !> across the plate, the contact area an impactor.
@@ -87,76 +106,6 @@ contains
     end do
   end function apply_to
 
-  !> Names of some rows.
-  pure function names_of(rows) result(names)
-    !> Rows of the table
-    character(len=*), intent(in) :: rows(:)
-    !> In the order of the rows
-    character(len=result_name_length) :: names(size(rows))
-    integer :: i
-
-    do i = 1, size(rows)
-      names(i) = cell(rows(i), column_name)
-    end do
-  end function names_of
-
-  !> Names of some rows with a number for their N.
-  pure function numbered(rows, number) result(names)
-    !> Rows of the table
-    character(len=*), intent(in) :: rows(:)
-    integer, intent(in) :: number
-    !> One per row
-    character(len=result_name_length) :: names(size(rows))
-    integer :: i
-
-    do i = 1, size(rows)
-      names(i) = name_with_number(cell(rows(i), column_name), number)
-    end do
-  end function numbered
-
-  !> True for rows of integers.
-  pure function are_whole(rows) result(whole)
-    !> Rows of the table
-    character(len=*), intent(in) :: rows(:)
-    !> One per row
-    logical :: whole(size(rows))
-    integer :: i
-
-    do i = 1, size(rows)
-      whole(i) = cell(rows(i), column_type) /= 'real'
-    end do
-  end function are_whole
-
-  !> True for columns of integers.
-  pure function column_whole(deck) result(whole)
-    type(deck_t), intent(in) :: deck
-    !> In the order of the table
-    logical, allocatable :: whole(:)
-    integer :: i
-
-    whole = [pack(are_whole(plate_rows), apply_to(deck%setup)), &
-             (are_whole(interface_rows), i=1, size(deck%setup%delaminations))]
-    if (size(deck%setup%lines) > 0) &
-      whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%setup%lines))]
-    if (has_ends(deck%setup%plate, deck%setup%lines)) whole = [whole, are_whole(end_rows)]
-    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%setup%plate%gauges)), &
-             (are_whole(stringer_column_rows), i=1, size(deck%setup%stringers))]
-    if (deck%output%force_filter > 0) whole = [whole, are_whole(filter_rows)]
-  end function column_whole
-
-  !> Forces of pressure and lines at the owned points.
-  pure function loads_on(model, now) result(loads)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: now
-    !> Forces on the unknowns, (5, points)
-    real(wp), allocatable :: loads(:, :)
-
-    allocate (loads, mold=now%motion%displacement)
-    call model%loads%line_forces(now%motion%displacement, now%load_factor, loads)
-    if (allocated(model%loads%pressure)) &
-      loads = loads + model%plate%setup%pressure_factor(now%time, now%load_factor)*model%loads%pressure
-  end function loads_on
-
   !> Row of the state reached. Collective.
   function row_of(model, stepper, record) result(row)
     type(model_t), intent(in) :: model
@@ -167,13 +116,16 @@ contains
     real(wp), allocatable :: loads(:, :), lines(:)
 
     associate (now => stepper%now)
-      loads = loads_on(model, now)
+      allocate (loads, mold=now%motion%displacement)
+      call model%loads%line_forces(now%motion%displacement, now%load_factor, loads)
+      if (allocated(model%loads%pressure)) &
+        loads = loads + model%plate%setup%pressure_factor(now%time, now%load_factor)*model%loads%pressure
       row = [motion_values(now), area_values(model%plate, now%interfaces), ledger_values(now%ledger), &
              step_values(now, stepper%last_step()), &
              release_values(model%plate, now%interfaces, now%motion%displacement), &
-             iteration_values(now, stepper%rejected_steps()), operator_values(stepper%operator), &
+             iteration_values(now, stepper%rejected), operator_values(stepper%operator), &
              ply_values(model%plate, now%plies), border_values(model%plate, now%interfaces), &
-             rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
+             rig_values(model, now%interfaces, now%motion, loads), now%ledger%friction, now%ledger%layers, &
              real(size(record%warning_kinds), wp), now%impact%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &
              dent_depth(model%plate, now%motion%displacement) + now%impact%indentation%dent, &

@@ -2,7 +2,6 @@
 module run_figures
   use band_energies, only: strengthened_so_far
   use compressed_damage, only: compressed_damage_t, between_supports, damage_of
-  use crack_band_sections, only: crack_band_sections_t
   use dent_depths, only: dent_depth
   use end_sections, only: skin_share
   use errors, only: error_t, exit_done, exit_stopped
@@ -10,7 +9,6 @@ module run_figures
   use interface_figures, only: figures_of, interface_figures_t
   use kinds, only: wp
   use line_columns, only: pressed_axis
-  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes
   use projected_areas, only: area_rules, projected_areas_of
@@ -69,6 +67,7 @@ contains
     type(state_t), intent(in) :: now
     !> Its results
     type(run_figures_t), intent(out) :: figures
+    real(wp) :: totals(2)
     integer :: zones, along, ply
 
     figures%interfaces = figures_of(model%plate, now%interfaces)
@@ -77,7 +76,12 @@ contains
     figures%failures = failed_counts(model%plate, now%plies)
     figures%failed_area = failed_areas(model%plate, now%plies)
     figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plate%layup%plies)]
-    if (model%plate%setup%has_rates()) figures%strengthening = mean_strengthening(model%plate, now%plies%bands)
+    if (model%plate%setup%has_rates()) then
+      associate (bands => now%plies%bands)
+        totals = totals_of(model%plate%communicator, strengthened_so_far(bands%states, bands%plies, bands%area))
+      end associate
+      if (totals(1) > 0) figures%strengthening = totals(2)/totals(1)
+    end if
     along = pressed_axis(model)
     if (along > 0) then
       figures%compressed = damage_of(model%plate, now, along)
@@ -93,18 +97,6 @@ contains
       if (starter > 0) figures%starter_threshold = figures%threshold(1)*patch_factor(patch, starter**2)
     end associate
   end subroutine find_figures
-
-  !> Mean factor of the strengths of cracked matrix by the strain rate; 0: no matrix has cracked. Collective.
-  real(wp) function mean_strengthening(plate, bands) result(factor)
-    type(composite_plate_t), intent(in) :: plate
-    !> The plies
-    type(crack_band_sections_t), intent(in) :: bands
-    real(wp) :: totals(2)
-
-    factor = 0
-    totals = totals_of(plate%communicator, strengthened_so_far(bands%states, bands%plies, bands%area))
-    if (totals(1) > 0) factor = totals(2)/totals(1)
-  end function mean_strengthening
 
   !> End of a run.
   pure function ending_of(error) result(ending)

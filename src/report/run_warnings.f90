@@ -94,7 +94,7 @@ contains
     !> One sentence each; empty: none
     type(line_t), allocatable, intent(out) :: warnings(:)
     real(wp) :: thickness
-    integer :: zone
+    integer :: zone, i
     logical :: exceeded(3)
 
     allocate (warnings(0))
@@ -106,10 +106,12 @@ contains
     call add('indentation', now%impact%indentation%alpha > max_indentation(deck))
     if (now%impact%force > 0) &
       call add('below_nose', now%impact%depth_below_impactor(model) > limit_of('below_nose')*thickness)
-    call add('steps', stepper%exceeds_tolerance())
+    call add('steps', stepper%error_exceeded)
     call add('mapping', record%mapping%raises_strain())
-    if (is_new(record, 'slopes')) call add('slopes', is_steep(model%plate, now))
-    if (is_new(record, 'stringer') .and. have_strengths(deck)) &
+    if (is_new(record, 'slopes')) call add('slopes', model%plate%communicator%any( &
+                                           maxval(abs(now%motion%displacement(4:5, :))) > limit_of('slopes')))
+    if (is_new(record, 'stringer') .and. &
+        any([(any(deck%setup%stringers(i)%failure_strains > 0), i=1, size(deck%setup%stringers))])) &
       call add('stringer', weakest_stringer(model%plate, now%motion%displacement) > 0)
     if (is_new(record, 'membrane') .and. abs(now%impact%deflection) > limit_of('membrane')*thickness) &
       call add('membrane', has_fibre_failure(deck, model%plate, now))
@@ -121,7 +123,7 @@ contains
     call record%note_motion(deck, now)
     if (deck%setup%is_impact() .or. has_developed(deck, now%time)) then
       call add('scaled', record%scaled_energy > limit_of('scaled')*now%ledger%largest)
-      call add('contact', stepper%dissipates_in_contact() .and. &
+      call add('contact', stepper%dissipates_in_contact .and. &
                now%ledger%contact > limit_of('contact')*now%ledger%largest)
     end if
     call add('kinetic', record%slow_motion%share > limit_of('kinetic'))
@@ -207,22 +209,6 @@ contains
                  2*((cells_ahead + cells_at_once)*deck%setup%mesh%cell + &
                     thicknesses_ahead*deck%expected%scales%thickness))
   end function leaves_core
-
-  !> True: a rotation of the plate exceeds the limit of moderate rotations. Collective.
-  logical function is_steep(plate, now)
-    type(composite_plate_t), intent(in) :: plate
-    type(state_t), intent(in) :: now
-
-    is_steep = plate%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > limit_of('slopes'))
-  end function is_steep
-
-  !> True: the strength of a stringer is known.
-  pure logical function have_strengths(deck)
-    type(deck_t), intent(in) :: deck
-    integer :: i
-
-    have_strengths = any([(any(deck%setup%stringers(i)%failure_strains > 0), i=1, size(deck%setup%stringers))])
-  end function have_strengths
 
   !> True: the fibres of every ply at the struck point have failed over an area as large as patch and contact, so that
   !> the contact force has no support. Collective.

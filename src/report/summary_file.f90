@@ -1,9 +1,7 @@
 !> NAME_summary.json: the summary in full precision. doc/manual/summary.md describes it.
 module summary_file
   use compression_summary, only: put_collapse
-  use summary_provenance, only: put_provenance
   use deck_contents, only: deck_t
-  use errors, only: error_t, exit_files, fail
   use force_filters, only: filter_kind
   use json_text, only: json_t
   use interface_summary, only: put_interfaces
@@ -14,7 +12,7 @@ module summary_file
   use profiles, only: profile_row_t, profile_t
   use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
-  use run_provenance, only: provenance_t
+  use run_provenance, only: citation_of, provenance_t
   use run_records, only: run_record_t
   use run_results, only: results_t
   use steppers, only: stepper_t
@@ -58,7 +56,14 @@ contains
     call json%put('message', ending%message)
     call json%close()
     call results%put(json)
-    if (deck%setup%moves_impactor() .and. record%filter%frequency > 0) call put_filtered(json, record)
+    if (deck%setup%moves_impactor() .and. record%filter%frequency > 0) then
+      call json%open_object(key_force_filter)
+      call json%put('kind', filter_kind)
+      call json%put('frequency', record%filter%frequency)
+      call json%put('peak_force', record%peak_filtered)
+      call json%put('peak_force_at', shown_time(record%peak_filtered_time))
+      call json%close()
+    end if
     call record%mapping%put(json, deck%setup%delaminations%below_ply)
     if (record%compression%strength > 0) call put_collapse(json, record, figures, deck%setup%delaminations%below_ply)
     call put_errors(json, errors)
@@ -71,19 +76,6 @@ contains
     call json%finished(content)
   end function summary_text
 
-  !> Largest filtered force.
-  subroutine put_filtered(json, record)
-    type(json_t), intent(inout) :: json
-    type(run_record_t), intent(in) :: record
-
-    call json%open_object(key_force_filter)
-    call json%put('kind', filter_kind)
-    call json%put('frequency', record%filter%frequency)
-    call json%put('peak_force', record%peak_filtered)
-    call json%put('peak_force_at', shown_time(record%peak_filtered_time))
-    call json%close()
-  end subroutine put_filtered
-
   !> Estimated errors.
   subroutine put_errors(json, errors)
     type(json_t), intent(inout) :: json
@@ -91,26 +83,26 @@ contains
 
     call json%open_object('estimated_errors')
     call json%put('source', trim(errors%source))
-    call put_known('peak_force', errors%peak_force)
-    call put_known('peak_force_at', errors%peak_time)
-    call put_known('contact_duration', errors%contact_duration)
-    call put_known('largest_deflection', errors%deflection)
-    call put_known('impactor_velocity', errors%velocity)
-    call put_known('delaminated_area', errors%area)
+    call put_known(json, 'peak_force', errors%peak_force, errors%peak_force >= 0)
+    call put_known(json, 'peak_force_at', errors%peak_time, errors%peak_time >= 0)
+    call put_known(json, 'contact_duration', errors%contact_duration, errors%contact_duration >= 0)
+    call put_known(json, 'largest_deflection', errors%deflection, errors%deflection >= 0)
+    call put_known(json, 'impactor_velocity', errors%velocity, errors%velocity >= 0)
+    call put_known(json, 'delaminated_area', errors%area, errors%area >= 0)
     call json%close()
-
-  contains
-
-    !> Adds an error, or null.
-    subroutine put_known(name, error)
-      character(len=*), intent(in) :: name
-      !> The error; negative: not known
-      real(wp), intent(in) :: error
-
-      if (error >= 0) call json%put(name, error)
-      if (.not. error >= 0) call json%put_null(name)
-    end subroutine put_known
   end subroutine put_errors
+
+  !> Adds a number, or null.
+  subroutine put_known(json, name, value, is_known)
+    type(json_t), intent(inout) :: json
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: value
+    !> False: null
+    logical, intent(in) :: is_known
+
+    if (is_known) call json%put(name, value)
+    if (.not. is_known) call json%put_null(name)
+  end subroutine put_known
 
   !> The plate and its plies.
   subroutine put_plies(json, deck, figures)
@@ -118,6 +110,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(run_figures_t), intent(in) :: figures
     type(laminate_t) :: list
+    real(wp) :: volume
     integer :: ply
 
     list = deck%setup%all_plies()
@@ -135,32 +128,18 @@ contains
         call json%put('fibre_failure_area', figures%failed_area(1, ply))
         call json%put('matrix_crack_area', figures%failed_area(2, ply))
         call json%put('matrix_crushing_area', figures%failed_area(3, ply))
-        if (deck%setup%ply_damage%weibull_modulus > 0 .and. .not. deck%setup%ply_damage%scatters()) &
-          call put_strength(json, deck, figures%stressed_volume(ply), deck%setup%materials(list%material(ply))%xt)
+        if (deck%setup%ply_damage%weibull_modulus > 0 .and. .not. deck%setup%ply_damage%scatters()) then
+          ! Strength at the first failure of fibres in tension, and the stressed volume that it belongs to.
+          volume = figures%stressed_volume(ply)
+          call put_known(json, 'stressed_volume', volume, volume > 0)
+          call put_known(json, 'fibre_strength', deck%setup%materials(list%material(ply))%xt* &
+                         factor_of(deck%setup%ply_damage, merge(volume, 1.0_wp, volume > 0)), volume > 0)
+        end if
       end if
       call json%close()
     end do
     call json%close()
   end subroutine put_plies
-
-  !> Tensile strength of the fibres of a ply, and the stressed volume it belongs to, at their first failure; null
-  !> without.
-  subroutine put_strength(json, deck, volume, strength)
-    type(json_t), intent(inout) :: json
-    type(deck_t), intent(in) :: deck
-    !> The volume; 0: the fibres have not failed
-    real(wp), intent(in) :: volume
-    !> Tensile strength of the reference volume
-    real(wp), intent(in) :: strength
-
-    if (volume > 0) then
-      call json%put('stressed_volume', volume)
-      call json%put('fibre_strength', factor_of(deck%setup%ply_damage, volume)*strength)
-    else
-      call json%put_null('stressed_volume')
-      call json%put_null('fibre_strength')
-    end if
-  end subroutine put_strength
 
   !> Warnings on the deck, which have no time, and those of the run.
   subroutine put_warnings(json, deck, record, given)
@@ -196,7 +175,7 @@ contains
 
     call json%open_object('costs')
     call json%put('unknowns', stepper%unknowns)
-    call json%put('rejected', stepper%rejected_steps())
+    call json%put('rejected', stepper%rejected)
     call json%put('total_iterations', stepper%now%all_iterations%equilibrium)
     call json%put('total_force_iterations', stepper%now%all_iterations%force)
     call json%put('refactorisations', stepper%operator%factorizations)
@@ -204,6 +183,24 @@ contains
     call json%put('wall_seconds', seconds)
     call json%close()
   end subroutine put_costs
+
+  !> Provenance of the result.
+  subroutine put_provenance(json, provenance)
+    type(json_t), intent(inout) :: json
+    type(provenance_t), intent(in) :: provenance
+
+    call json%open_object('provenance')
+    call json%put('version', provenance%version)
+    call json%put('commit', provenance%commit)
+    call json%put('compiler', provenance%compiler)
+    call json%put('petsc_version', provenance%petsc_version)
+    call json%put('citation', citation_of(provenance%version))
+    call json%put('ranks', provenance%ranks)
+    call json%put('started', provenance%started)
+    call json%put('deck', provenance%deck)
+    if (provenance%library /= '') call json%put('library', provenance%library)
+    call json%close()
+  end subroutine put_provenance
 
   !> Profile of time and memory, if requested.
   subroutine put_profile(json, rows)

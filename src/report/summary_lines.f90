@@ -82,20 +82,16 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(results_t), intent(in) :: results
 
-    call add_figure(lines, 'failed plies', counted_of('fibre_failures')//', '//counted_of('matrix_cracks')//', '// &
-                    counted_of('matrix_crushings')//' (counted in each element)')
+    character(len=*), parameter :: names(*) = [character(len=16) :: 'fibre_failures', 'matrix_cracks', &
+                                                                    'matrix_crushings']
+    character(len=:), allocatable :: words
+    integer :: i
 
-  contains
-
-    !> Label and whole number.
-    pure function counted_of(name) result(words)
-      !> Name of the result
-      character(len=*), intent(in) :: name
-      !> Such as fibres 3
-      character(len=:), allocatable :: words
-
-      words = label_of_result(name)//' '//to_text(nint(results%value(name)))
-    end function counted_of
+    words = ''
+    do i = 1, size(names)
+      words = words//', '//label_of_result(trim(names(i)))//' '//to_text(nint(results%value(trim(names(i)))))
+    end do
+    call add_figure(lines, 'failed plies', words(3:)//' (counted in each element)')
   end subroutine add_failed_plies
 
   !> Adds a line.
@@ -116,7 +112,7 @@ contains
     type(results_t), intent(in) :: results
     type(run_record_t), intent(in) :: record
     type(run_errors_t), intent(in) :: errors
-    character(len=:), allocatable :: until
+    character(len=:), allocatable :: until, repeated
 
     call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')// &
                     within(results, 'peak_force', errors%peak_force)//' at '// &
@@ -126,10 +122,12 @@ contains
       call add_figure(lines, 'filtered', results%with_unit(record%peak_filtered, force_kind)//' at '// &
                       moment(deck, record%peak_filtered_time)//' after the low-pass filter of '// &
                       results%with_unit(record%filter%frequency, frequency_kind))
+    repeated = ''
+    if (record%contacts > 1) repeated = ' in '//to_text(record%contacts)//' contacts'
     until = ', until '//results%shown('contact_until')
     if (results%value('in_contact') > 0) until = ', and still at the end'
     call add_figure(lines, label_of_result('contact_duration'), results%shown('contact_duration')// &
-                    repeated(record%contacts)//until//within(results, 'contact_duration', errors%contact_duration))
+                    repeated//until//within(results, 'contact_duration', errors%contact_duration))
     if (results%value('in_contact') > 0) then
       call add_figure(lines, label_of_result('impactor_velocity'), results%shown('impactor_velocity')// &
                       within(results, 'impactor_velocity', errors%velocity))
@@ -178,17 +176,6 @@ contains
     end if
   end function within
 
-  !> Clause on the number of contacts.
-  pure function repeated(contacts) result(clause)
-    !> Number of contacts
-    integer, intent(in) :: contacts
-    !> Empty for one
-    character(len=:), allocatable :: clause
-
-    clause = ''
-    if (contacts > 1) clause = ' in '//to_text(contacts)//' contacts'
-  end function repeated
-
   !> Energy of the impactor and its loss, which is the absorbed energy once the contact has ended.
   subroutine add_impact_energy(lines, results)
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -236,10 +223,13 @@ contains
     type(run_record_t), intent(in) :: record
     type(run_figures_t), intent(in) :: figures
     type(run_errors_t), intent(in) :: errors
+    character(len=:), allocatable :: error_of_area
     integer :: zone
 
+    error_of_area = ''
+    if (errors%area >= 0) error_of_area = ' (+-'//results%with_unit(errors%area, area_kind, 2)//')'
     call add_figure(lines, label_of_result('delaminated_area'), results%shown('delaminated_area')// &
-                    ' of all interfaces'//error_of_area())
+                    ' of all interfaces'//error_of_area)
     call add_figure(lines, '  projected', results%shown('projected_area')// &
                     ' by dissipated fractions, as in a C-scan; failed points '// &
                     results%shown('projected_area_failed')//', with process zones '// &
@@ -251,17 +241,6 @@ contains
     do zone = 1, size(figures%interfaces)
       call add_interface(lines, deck, results, record, figures, zone)
     end do
-
-  contains
-
-    !> Estimated error of the area.
-    pure function error_of_area() result(clause)
-      !> Empty if it is not known
-      character(len=:), allocatable :: clause
-
-      clause = ''
-      if (errors%area >= 0) clause = ' (+-'//results%with_unit(errors%area, area_kind, 2)//')'
-    end function error_of_area
   end subroutine add_interfaces
 
   !> Results of an interface.
@@ -273,7 +252,11 @@ contains
     type(run_figures_t), intent(in) :: figures
     !> The interface
     integer, intent(in) :: zone
+    character(len=:), allocatable :: of_starter
 
+    of_starter = ''
+    if (results%has('threshold_force_at_starter')) &
+      of_starter = ', '//results%shown('threshold_force_at_starter')//' with the starter under this patch'
     associate (figure => figures%interfaces(zone))
       call add_figure(lines, '  below ply '//to_text(deck%setup%delaminations(zone)%below_ply), 'area '// &
                 results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
@@ -286,7 +269,7 @@ contains
         call add_figure(lines, '', 'threshold force (closed form) '// &
                         results%with_unit(figures%threshold(zone), force_kind)// &
                         ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
-                        of_starter())
+                        of_starter)
     end associate
 
   contains
@@ -300,16 +283,6 @@ contains
 
       words = results%with_unit(bounds(1), length_kind)//' to '//results%with_unit(bounds(2), length_kind)
     end function range_of
-
-    !> The closed form with the radius of the starter.
-    pure function of_starter() result(clause)
-      !> Empty without
-      character(len=:), allocatable :: clause
-
-      clause = ''
-      if (results%has('threshold_force_at_starter')) &
-        clause = ', '//results%shown('threshold_force_at_starter')//' with the starter under this patch'
-    end function of_starter
   end subroutine add_interface
 
   !> Time and force of an event, if it occurred.

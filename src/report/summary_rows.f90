@@ -1,14 +1,14 @@
 !> The results of a run: the one table of their names, types, kinds of unit, labels and meanings. The summary, the log,
 !> the verification, `implam explain summary` and the manual read it.
 module summary_rows
-  use result_tables, only: cell, result_row_length
+  use result_tables, only: cell, field_row, result_row_length
   implicit none
   private
-  public :: row_of_result, type_of_result, unit_of_result, label_of_result
+  public :: type_of_result, unit_of_result, label_of_result
 
   !> Heading, and numbers of the cells.
   character(len=*), parameter, public :: summary_heading = 'name | type | unit | label | meaning'
-  integer, parameter :: of_name = 1, of_type = 2, of_unit = 3, of_label = 4
+  integer, parameter :: of_type = 2, of_unit = 3, of_label = 4
   integer, parameter, public :: summary_meaning = 5
 
   !> The results, in the order of the summary.
@@ -93,22 +93,13 @@ module summary_rows
 
 contains
 
-  !> Row of a result; 0: there is none of this name.
-  pure integer function row_of_result(name) result(row)
-    character(len=*), intent(in) :: name
-
-    do row = size(summary_table), 1, -1
-      if (cell(summary_table(row), of_name) == name) return
-    end do
-  end function row_of_result
-
   !> Its type: real, integer or logical.
   pure function type_of_result(name) result(word)
     character(len=*), intent(in) :: name
     !> The type
     character(len=:), allocatable :: word
 
-    word = cell(summary_table(row_of_result(name)), of_type)
+    word = cell(summary_table(field_row(summary_table, name)), of_type)
   end function type_of_result
 
   !> Kind of its unit.
@@ -117,7 +108,7 @@ contains
     !> Such as force
     character(len=:), allocatable :: word
 
-    word = cell(summary_table(row_of_result(name)), of_unit)
+    word = cell(summary_table(field_row(summary_table, name)), of_unit)
   end function unit_of_result
 
   !> Its label in the log.
@@ -126,6 +117,6 @@ contains
     !> Such as peak force
     character(len=:), allocatable :: word
 
-    word = cell(summary_table(row_of_result(name)), of_label)
+    word = cell(summary_table(field_row(summary_table, name)), of_label)
   end function label_of_result
 end module summary_rows

@@ -18,7 +18,7 @@ module fields_file
   use result_tables, only: result_row_length
   use run_provenance, only: provenance_t
   use stored_provenance, only: write_provenance
-  use text, only: append, line_t, to_text
+  use text, only: append, line_t
   implicit none
   private
   public :: fields_file_t
@@ -74,7 +74,6 @@ contains
   subroutine create(self, communicator, base, provenance, part, error)
     class(fields_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
     !> The run
     type(provenance_t), intent(in) :: provenance
@@ -97,7 +96,6 @@ contains
   !> Checks, before any change, that an existing file is that of the deck.
   subroutine check_deck(communicator, base, deck, error)
     type(communicator_t), intent(in) :: communicator
-    !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
     character(len=*), intent(in) :: deck
     !> Set if it is that of another deck
@@ -106,9 +104,7 @@ contains
     character(len=:), allocatable :: found
     logical :: present
 
-    present = .false.
-    if (communicator%is_root()) present = file_exists(base//'.h5')
-    call communicator%broadcast(present)
+    present = communicator%any(communicator%is_root() .and. file_exists(base//'.h5'))
     if (.not. present) return
     call file%open(communicator, base//'.h5', writable=.false.)
     call read_text(file, 'provenance/deck', found)
@@ -122,7 +118,6 @@ contains
   subroutine resume(self, communicator, base, provenance, part, last_time, error)
     class(fields_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
     !> The continued run
     type(provenance_t), intent(in) :: provenance
@@ -136,9 +131,7 @@ contains
     logical :: present
 
     if (allocated(error)) return
-    present = .false.
-    if (communicator%is_root()) present = file_exists(base//'.h5')
-    call communicator%broadcast(present)
+    present = communicator%any(communicator%is_root() .and. file_exists(base//'.h5'))
     if (.not. present) then
       call self%create(communicator, base, provenance, part, error)
       return
@@ -287,7 +280,6 @@ contains
   subroutine name_files(self, communicator, base, part)
     class(fields_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
     !> Modelled part of the plate
     character(len=*), intent(in) :: part

@@ -1,5 +1,5 @@
 !> Numbers and text in a shared HDF5 file: arrays known to every rank, and tables with columns distributed over the
-!> ranks and stored in global order. Every routine is collective.
+!> ranks and stored in global order. Every routine is collective; `name` is a path inside the file.
 module hdf5_data
   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
     h5t_native_integer, h5t_std_i32le, h5tclose_f, h5tcopy_f, h5tget_size_f, h5tset_size_f, hid_t, size_t
@@ -17,11 +17,9 @@ contains
   !> Writes reals known to every rank.
   subroutine write_reals(file, name, values, extents)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> The numbers, in array element order
     real(wp), intent(in) :: values(:)
-    !> Extents of the stored array; none: a scalar
     integer, intent(in) :: extents(:)
     real(wp), allocatable, target :: buffer(:)
 
@@ -32,7 +30,6 @@ contains
   !> Reads reals to every rank.
   subroutine read_reals(file, name, values, extents)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> The numbers, in array element order
     real(wp), allocatable, intent(out) :: values(:)
@@ -48,11 +45,9 @@ contains
   !> Writes integers known to every rank.
   subroutine write_integers(file, name, values, extents)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> The numbers, in array element order
     integer, intent(in) :: values(:)
-    !> Extents of the stored array; none: a scalar
     integer, intent(in) :: extents(:)
     integer, allocatable, target :: buffer(:)
 
@@ -63,7 +58,6 @@ contains
   !> Reads integers to every rank.
   subroutine read_integers(file, name, values, extents)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> The numbers, in array element order
     integer, allocatable, intent(out) :: values(:)
@@ -79,7 +73,6 @@ contains
   !> Writes a text known to every rank.
   subroutine write_text(file, name, value)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> The text; an empty one is stored as a blank
     character(len=*), intent(in) :: value
@@ -101,7 +94,6 @@ contains
   !> Reads a text to every rank; empty if it is not there.
   subroutine read_text(file, name, value)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> The text
     character(len=:), allocatable, intent(out) :: value
@@ -130,11 +122,9 @@ contains
   !> Writes a table of reals with columns distributed over the ranks.
   subroutine write_real_columns(file, name, columns, global_columns, values)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> Global numbers (from 1) of the leading columns of `values`; no other rank has them
     integer, intent(in) :: columns(:)
-    !> Number of columns on all ranks
     integer, intent(in) :: global_columns
     !> The table; columns after size(columns) are ignored
     real(wp), intent(in) :: values(:, :)
@@ -150,11 +140,9 @@ contains
   !> Reads a table of reals with columns distributed over the ranks.
   subroutine read_real_columns(file, name, columns, global_columns, values)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> Global numbers (from 1) of the leading columns of `values`
     integer, intent(in) :: columns(:)
-    !> Number of columns on all ranks
     integer, intent(in) :: global_columns
     !> The table; columns after size(columns) are unchanged, and all after an error
     real(wp), intent(inout) :: values(:, :)
@@ -176,11 +164,9 @@ contains
   !> Writes a table of integers with columns distributed over the ranks.
   subroutine write_integer_columns(file, name, columns, global_columns, values)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> Global numbers (from 1) of the leading columns of `values`; no other rank has them
     integer, intent(in) :: columns(:)
-    !> Number of columns on all ranks
     integer, intent(in) :: global_columns
     !> The table; columns after size(columns) are ignored
     integer, intent(in) :: values(:, :)
@@ -197,7 +183,6 @@ contains
   pure function table_extents(height, global_columns) result(extents)
     !> Numbers per column
     integer, intent(in) :: height
-    !> Number of columns on all ranks
     integer, intent(in) :: global_columns
     integer, allocatable :: extents(:)
 

@@ -60,7 +60,6 @@ contains
   !> Creates a file, replacing one of that name.
   subroutine create(self, communicator, path, head)
     class(hdf5_file_t), intent(inout) :: self
-    !> The ranks that share it
     type(communicator_t), intent(in) :: communicator
     character(len=*), intent(in) :: path
     !> Bytes kept free at the start of the file: 0, or a power of two of at least 512
@@ -84,7 +83,6 @@ contains
   !> Opens a file that is there.
   subroutine open (self, communicator, path, writable)
     class(hdf5_file_t), intent(inout) :: self
-    !> The ranks that share it
     type(communicator_t), intent(in) :: communicator
     character(len=*), intent(in) :: path
     !> The file is to be written to as well
@@ -105,7 +103,6 @@ contains
   !> Resets the error and the file.
   subroutine start_over(self, communicator)
     class(hdf5_file_t), intent(inout) :: self
-    !> The ranks that share the file
     type(communicator_t), intent(in) :: communicator
 
     if (allocated(self%failure)) deallocate (self%failure)
@@ -270,7 +267,6 @@ contains
   !> True if there is a group or dataset of that path.
   logical function exists(self, path)
     class(hdf5_file_t), intent(in) :: self
-    !> Path inside the file
     character(len=*), intent(in) :: path
     integer :: status
 
@@ -283,7 +279,6 @@ contains
   !> Creates a group, and the missing groups above it.
   subroutine make_group(self, path)
     class(hdf5_file_t), intent(inout) :: self
-    !> Path inside the file
     character(len=*), intent(in) :: path
     integer(hid_t) :: group
     integer :: status
@@ -297,7 +292,6 @@ contains
   !> Removes a group with its content, or a dataset.
   subroutine remove(self, path)
     class(hdf5_file_t), intent(inout) :: self
-    !> Path inside the file
     character(len=*), intent(in) :: path
     integer :: status
 
@@ -309,7 +303,6 @@ contains
   !> Removes a group after an error, so that the file can be closed.
   subroutine discard(self, path)
     class(hdf5_file_t), intent(inout) :: self
-    !> Path inside the file
     character(len=*), intent(in) :: path
     integer :: status
 

@@ -1,5 +1,5 @@
 !> Transfers of any type of numbers between memory and a shared HDF5 file: each rank writes or reads some of the columns
-!> (along the last extent) of an array. Every routine is collective.
+!> (along the last extent) of an array. Every routine is collective; `name` is a path inside the file.
 module hdf5_transfers
   use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dread_f, h5dwrite_f, h5s_scalar_f, &
     h5s_select_set_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
@@ -15,7 +15,6 @@ contains
   !> Extents of a stored array; none for a scalar or if it is not there.
   function stored_shape(file, name) result(extents)
     type(hdf5_file_t), intent(in) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     integer, allocatable :: extents(:)
     integer(hid_t) :: dataset, space
@@ -38,7 +37,6 @@ contains
   !> Creates a dataset and writes this rank's columns of it.
   subroutine put(file, name, stored_type, native_type, address, extents, columns)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> Type of the numbers in the file
     integer(hid_t), intent(in) :: stored_type
@@ -70,7 +68,6 @@ contains
   !> Reads this rank's columns of a dataset.
   subroutine get(file, name, native_type, address, extents, columns)
     type(hdf5_file_t), intent(inout) :: file
-    !> Path inside the file
     character(len=*), intent(in) :: name
     !> Type of the numbers in memory
     integer(hid_t), intent(in) :: native_type

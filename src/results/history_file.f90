@@ -53,9 +53,7 @@ contains
     class(history_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
     character(len=*), intent(in) :: path
-    !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> Integer columns
     logical, intent(in) :: whole(:)
     !> Raised if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -80,9 +78,7 @@ contains
     class(history_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
     character(len=*), intent(in) :: path
-    !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> Integer columns
     logical, intent(in) :: whole(:)
     !> Rows written when the checkpoint was
     integer, intent(in) :: rows_to_keep
@@ -92,9 +88,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     logical :: present
 
-    present = .false.
-    if (communicator%is_root()) present = file_exists(path)
-    call communicator%broadcast(present)
+    present = communicator%any(communicator%is_root() .and. file_exists(path))
     if (.not. present) then
       call self%create(communicator, path, columns, whole, error)
       return

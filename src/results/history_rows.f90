@@ -14,7 +14,6 @@ contains
 
   !> First line of the file.
   pure function header(columns) result(line)
-    !> Names of the columns
     character(len=*), intent(in) :: columns(:)
     character(len=:), allocatable :: line
     integer :: i
@@ -28,9 +27,7 @@ contains
 
   !> Characters of each column, those of its name at least.
   pure function widths_of(columns, whole) result(widths)
-    !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> Integer columns
     logical, intent(in) :: whole(:)
     integer :: widths(size(columns))
 
@@ -40,7 +37,6 @@ contains
   !> One row as text: the shortest texts that read back as the same numbers.
   pure function row(values, whole, widths) result(line)
     real(wp), intent(in) :: values(:)
-    !> Integer columns
     logical, intent(in) :: whole(:)
     !> Characters of each column
     integer, intent(in) :: widths(:)

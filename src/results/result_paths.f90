@@ -15,7 +15,6 @@ contains
 
   !> Checks that none of the files is a pipe: opening one would wait until another program reads it.
   subroutine refuse_pipes(base, error)
-    !> Folder and name that all results share
     character(len=*), intent(in) :: base
     type(error_t), allocatable, intent(inout) :: error
     integer :: i

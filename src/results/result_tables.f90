@@ -5,7 +5,7 @@ module result_tables
   use text, only: append, line_t, to_text
   implicit none
   private
-  public :: cell, field_row, is_number_type, is_place, is_unit_kind, markdown_table, name_with_number, plain_table
+  public :: cell, field_row, markdown_table, name_with_number, plain_table
 
   !> Characters of a row, enough for the longest.
   integer, parameter, public :: result_row_length = 220
@@ -24,9 +24,9 @@ module result_tables
                                 field_meaning = 6
 
   !> Physical dimensions, named as in the table of the deck; - if there is none.
-  character(len=*), parameter :: unit_kinds = '- time length area length/time force pressure energy radian'
-  !> Types of numbers, and where fields may be.
-  character(len=*), parameter :: number_types = 'real integer logical', places = 'points cells'
+  character(len=*), parameter, public :: unit_kinds = '- time length area length/time force pressure energy radian'
+  !> Types of numbers.
+  character(len=*), parameter, public :: number_types = 'real integer logical'
 
 contains
 
@@ -115,40 +115,6 @@ contains
     place = index(pattern//'_', '_N_')
     if (place > 0) name = pattern(:place)//to_text(number)//pattern(place + 2:)
   end function name_with_number
-
-  !> True for a physical dimension that results may have.
-  pure logical function is_unit_kind(word)
-    !> A cell
-    character(len=*), intent(in) :: word
-
-    is_unit_kind = is_one_of(word, unit_kinds)
-  end function is_unit_kind
-
-  !> True for a type of numbers.
-  pure logical function is_number_type(word)
-    !> A cell
-    character(len=*), intent(in) :: word
-
-    is_number_type = is_one_of(word, number_types)
-  end function is_number_type
-
-  !> True for a place where fields may be.
-  pure logical function is_place(word)
-    !> A cell
-    character(len=*), intent(in) :: word
-
-    is_place = is_one_of(word, places)
-  end function is_place
-
-  !> True if a word is one of several.
-  pure logical function is_one_of(word, words)
-    character(len=*), intent(in) :: word
-    !> Words separated by blanks
-    character(len=*), intent(in) :: words
-
-    is_one_of = len_trim(word) > 0 .and. scan(trim(word), ' ') == 0 .and. &
-                index(' '//words//' ', ' '//trim(word)//' ') > 0
-  end function is_one_of
 
   !> Number of cells of a row.
   pure integer function cells_of(row)

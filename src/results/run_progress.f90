@@ -82,11 +82,13 @@ contains
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line
     integer(long) :: now, rate
-    real(wp) :: elapsed
+    real(wp) :: elapsed, remaining
 
     call system_clock(now, rate)
     elapsed = real(now - self%started, wp)/rate
-    line = to_text(int(100*fraction))//' %, '//time_left(self%pace%left(elapsed, done, left))//' left'
+    remaining = self%pace%left(elapsed, done, left)
+    line = to_text(int(100*fraction))//' %, ? left'
+    if (remaining >= 0) line = to_text(int(100*fraction))//' %, '//duration(remaining)//' left'
     call self%pace%note(elapsed, done)
     if (len(text) > 0) line = line//', '//text
     if (log%interactive) then
@@ -109,17 +111,6 @@ contains
     call system_clock(now, rate)
     call log%note(text//' after '//duration(real(now - self%started, wp)/rate)//'.')
   end subroutine finish
-
-  !> Remaining time in words.
-  pure function time_left(seconds) result(left)
-    !> Remaining seconds; negative: not known
-    real(wp), intent(in) :: seconds
-    !> The time, or a question mark
-    character(len=:), allocatable :: left
-
-    left = '?'
-    if (seconds >= 0) left = duration(seconds)
-  end function time_left
 
   !> A time in a suitable unit.
   pure function duration(seconds) result(words)

@@ -54,7 +54,6 @@ contains
     !> Versions of this program
     type(build_t), intent(in) :: build
     character(len=*), intent(in) :: deck
-    !> Number of ranks
     integer, intent(in) :: ranks
     type(provenance_t) :: run
     character(len=8) :: date

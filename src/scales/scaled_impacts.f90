@@ -4,8 +4,9 @@ module scaled_impacts
   use elastic_impacts, only: difference, elastic_impact_t
   use kinds, only: wp
   use mathematical_constants, only: pi
-  use setup_elastic_impacts, only: contact_end, run_of, setup_elastic_impact_t, start_elastic_impact
-  use setup_scales, only: plate_modes, setup_scales_t
+  use setup_elastic_impacts, only: contact_end, run_of, setup_elastic_impact_t, start_elastic_impact, &
+                                   with_scaled_inertia
+  use setup_scales, only: setup_scales_t
   use setups, only: setup_t
   implicit none
   private
@@ -50,7 +51,7 @@ contains
     type(scaled_impact_t) :: found
     type(setup_elastic_impact_t) :: elastic
     type(elastic_impact_t) :: exact
-    real(wp) :: slowed, step, end
+    real(wp) :: slowed, step, end, changes(2)
     integer :: trial
 
     slowed = (2*pi*scales%thickness/scales%wave_length)**2/24
@@ -61,30 +62,13 @@ contains
     exact = run_of(elastic, step, end, 0.0_wp)
     found%scaling = min(limit, 1 + bound/slowed)
     do trial = 1, max_trials
-      found%change = change_of_history(elastic, found%scaling, step, end, exact)
+      ! Of the peak, and of the history
+      changes = difference(with_scaled_inertia(elastic, found%scaling, step, end), exact, 1)
+      found%change = changes(2)
       if (found%change <= bound) exit
       found%scaling = 1 + (found%scaling - 1)*safety_factor*bound/found%change
     end do
     if (found%change > bound) found = scaled_impact_t()
     found%slowed = (found%scaling - 1)*slowed
   end function largest_scaling
-
-  !> Change of the force history by scaled rotary inertia.
-  pure real(wp) function change_of_history(elastic, scaling, step, end, exact) result(change)
-    type(setup_elastic_impact_t), intent(in) :: elastic
-    !> Factor of rotary inertia
-    real(wp), intent(in) :: scaling
-    !> Step and end
-    real(wp), intent(in) :: step, end
-    !> The elastic impact without scaling
-    type(elastic_impact_t), intent(in) :: exact
-    type(setup_elastic_impact_t) :: scaled
-    real(wp) :: differences(2)
-
-    scaled%setup = elastic%setup
-    scaled%scales = elastic%scales
-    scaled%plate = plate_modes(elastic%setup, maxval(elastic%plate%frequency), scaling)
-    differences = difference(run_of(scaled, step, end, 0.0_wp), exact, 1)
-    change = differences(2)
-  end function change_of_history
 end module scaled_impacts

@@ -11,7 +11,7 @@ module setup_elastic_impacts
   implicit none
   private
   public :: setup_elastic_impact_t, expected_scales_t, start_elastic_impact, run_of, contact_end, largest_step, &
-            largest_cell, expected_scales_of
+            largest_cell, expected_scales_of, with_scaled_inertia
 
   !> A setup prepared for preliminary elastic impacts.
   type :: setup_elastic_impact_t
@@ -85,9 +85,7 @@ contains
     type(setup_scales_t), intent(in) :: scales
     type(setup_elastic_impact_t) :: elastic
 
-    elastic%setup = setup
-    elastic%scales = scales
-    elastic%plate = plate_modes(setup, resolved_angle*max_fine/scales%contact_time)
+    elastic = setup_elastic_impact_t(setup, scales, plate_modes(setup, resolved_angle*max_fine/scales%contact_time))
   end function start_elastic_impact
 
   !> A preliminary elastic impact with a given step; `complete` is false if it would take too many steps.
@@ -103,7 +101,8 @@ contains
     integer :: steps
 
     plate = reduced(self%plate, resolved_angle/step)
-    if (cell > 0) call disperse(plate, cell)
+    ! Modes too short for the elements become so stiff that they do not contribute.
+    if (cell > 0) plate%frequency = plate%frequency*(1 + dispersion*maxval(plate%wave_number*cell, 1)**4)
     steps = max_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
     run = run_elastic_impact(plate, self%setup%impactor, self%setup%impactor%indentation, step, steps, end > 0)
@@ -142,10 +141,9 @@ contains
 
     expected%of_impact = .true.
     expected%edge = edge
-    elastic%setup = setup
-    elastic%scales = scales
-    elastic%plate = plate_modes(setup, max(resolved_angle/step, min(2*resolved_angle/step, &
-                                                                    excited/scales%contact_time)))
+    elastic = setup_elastic_impact_t(setup, scales, &
+                                     plate_modes(setup, max(resolved_angle/step, min(2*resolved_angle/step, &
+                                                                                     excited/scales%contact_time))))
     coarse = run_of(elastic, step, end, 0.0_wp)
     if (nint(end/(step/2)) <= max_steps) then
       fine = run_of(elastic, step/2, end, 0.0_wp)
@@ -186,12 +184,10 @@ contains
     !> Step and end of the run
     real(wp), intent(in) :: step, end
     type(elastic_impact_t) :: run
-    type(setup_elastic_impact_t) :: scaled
 
-    scaled%setup = elastic%setup
-    scaled%scales = elastic%scales
-    scaled%plate = plate_modes(elastic%setup, maxval(elastic%plate%frequency), scaling)
-    run = run_of(scaled, step, end, 0.0_wp)
+    run = run_of(setup_elastic_impact_t(elastic%setup, elastic%scales, &
+                                        plate_modes(elastic%setup, maxval(elastic%plate%frequency), scaling)), &
+                 step, end, 0.0_wp)
   end function with_scaled_inertia
 
   !> Errors by step, mesh and scaled inertia together of the results of a summary. The change by scaled inertia is the
@@ -222,15 +218,7 @@ contains
       errors(1) = max(errors(1), fine%peak*error_with(scales, edge))
   end function errors_of_figures
 
-  !> Side of the elements around the patch for a given relative error of the force of first contact.
-  pure real(wp) function edge_for(scales, error) result(edge)
-    type(setup_scales_t), intent(in) :: scales
-    real(wp), intent(in) :: error
-
-    edge = scales%wave_length/wave_elements*(200*error)**wave_power
-  end function edge_for
-
-  !> Relative error of the force of first contact with such elements: the inverse of `edge_for`.
+  !> Relative error of the force of first contact with such elements: the inverse of the side in `largest_cell`.
   pure real(wp) function error_with(scales, edge) result(error)
     type(setup_scales_t), intent(in) :: scales
     !> Side of the elements
@@ -306,22 +294,10 @@ contains
     ! longer than the rise time do not resolve the first waves; the shortest resolved waves are longer by the root of
     ! the ratio.
     cell = min(minval(self%setup%plate%length)/4, &
-               edge_for(self%scales, bounds(1))*sqrt(longer))
+               self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power*sqrt(longer))
     do while (cell > self%scales%wave_length/20)
       if (all(bound_of_difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
       cell = cell*finer
     end do
   end function largest_cell
-
-  !> Sets the frequencies of the modes to those on elements of a given side. Modes too short for the elements become so
-  !> stiff that they do not contribute.
-  pure subroutine disperse(plate, cell)
-    type(modal_plate_t), intent(inout) :: plate
-    !> Side of the elements
-    real(wp), intent(in) :: cell
-    real(wp) :: rise(size(plate%frequency))
-
-    rise = 1 + dispersion*maxval(plate%wave_number*cell, 1)**4
-    plate%frequency = plate%frequency*rise
-  end subroutine disperse
 end module setup_elastic_impacts

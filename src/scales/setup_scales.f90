@@ -9,13 +9,12 @@ module setup_scales
   use mathematical_constants, only: pi
   use mesh_parameters, only: curvatures, edge_elastic, edge_free, edge_simple, in_plane_fixed
   use modal_plates, only: modal_plate_t, modal_plate_of
-  use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
   use ply_stacks, only: ply_stack_t
   use setups, only: setup_t
   use mean_stiffnesses, only: in_bending
   use stacking, only: section_t, stacked_plies, section_of
-  use stiffened_sections, only: bays_of, is_stiffened, plate_part_t, section_of_part, whole_part
+  use stiffened_sections, only: bays_of, free_bending, is_stiffened, plate_part_t, section_of_part, whole_part
   use support_parameters, only: window_none, window_rectangle, window_circle
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
@@ -159,14 +158,9 @@ contains
     type(laminate_t), intent(in) :: laminate
     !> Stiffness and mass
     type(section_t) :: section
-    real(wp) :: extension(3, 3), coupling(3, 3), bending(3, 3)
 
     section = section_of(in_bending(stacked_plies(laminate, setup%materials)), laminate%shear_correction)
-    extension = unpacked(section%stiffness(1:6))
-    coupling = unpacked(section%stiffness(7:12))
-    bending = unpacked(section%stiffness(13:18)) - matmul(coupling, matmul(inverse(extension), coupling))
-    section%stiffness(13:18) = [bending(1, 1), bending(1, 2), bending(1, 3), bending(2, 2), bending(2, 3), &
-                                bending(3, 3)]
+    section%stiffness(13:18) = free_bending(section%stiffness)
   end function section_of_laminate
 
   !> Modes of the setup's plate up to a frequency.

@@ -21,7 +21,7 @@ module stiffened_sections
   use stringers, only: face_front, stringer_t
   implicit none
   private
-  public :: bays_of, edges_across, is_stiffened, plate_part_t, section_of_part, whole_part
+  public :: bays_of, edges_across, free_bending, is_stiffened, plate_part_t, section_of_part, whole_part
 
   !> The plate, or a part of it between two stringers or between one and an edge.
   type :: plate_part_t
@@ -148,6 +148,7 @@ contains
     !> Along x and y
     real(wp), intent(out) :: series(2)
     type(section_t) :: here
+    type(ply_stack_t) :: stack
     real(wp), allocatable :: x(:), y(:), moved_x(:), moved_y(:), bent_x(:), bent_y(:), compliance(:, :, :)
     real(wp) :: packed(6), bending(2)
     integer :: i, j
@@ -161,7 +162,9 @@ contains
     allocate (compliance(size(moved_x), size(moved_y), 2))
     do j = 1, size(moved_y)
       do i = 1, size(moved_x)
-        here = section_at(setup, [x(i) + x(i + 1), y(j) + y(j + 1)]/2)
+        stack = setup%zones%stack(setup%laminate, setup%materials, &
+                                  setup%zones%at([x(i) + x(i + 1), y(j) + y(j + 1)]/2))
+        here = section_of(in_bending(stack%plies), setup%laminate%shear_correction)
         section%stiffness = section%stiffness + (x(i + 1) - x(i))*(y(j + 1) - y(j))/product(part%length())* &
                             here%stiffness
         section%mass = section%mass + moved_x(i)*moved_y(j)*here%mass
@@ -231,7 +234,6 @@ contains
     type(plate_part_t), intent(in) :: part
     !> 1 for x, 2 for y; by_deflection or by_curvature
     integer, intent(in) :: direction, of
-    !> Coordinate
     real(wp), intent(in) :: at
     real(wp) :: q, place
 
@@ -247,18 +249,6 @@ contains
       end if
     end associate
   end function mode_square
-
-  !> Section of the plies at a point, about the mid-plane of the laminate.
-  pure function section_at(setup, point) result(section)
-    type(setup_t), intent(in) :: setup
-    !> From the plate's centre
-    real(wp), intent(in) :: point(2)
-    type(section_t) :: section
-    type(ply_stack_t) :: stack
-
-    stack = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(point))
-    section = section_of(in_bending(stack%plies), setup%laminate%shear_correction)
-  end function section_at
 
   !> Adds a stringer, distributed over the part: its bending in its own plane, and its torsion. The twist is twice the
   !> second derivative that turns the stringer.

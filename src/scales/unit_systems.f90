@@ -83,7 +83,6 @@ contains
 
   !> True: a value in the units of a system is outside the range of its kind of quantity.
   pure logical function is_unusual(quantity, value, system)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
     real(wp), intent(in) :: value
     integer, intent(in) :: system
@@ -93,7 +92,6 @@ contains
 
   !> The unit in which a value would have a usual magnitude, or an empty text if there is none.
   pure function unit_that_fits(quantity, value) result(name)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
     real(wp), intent(in) :: value
     !> Symbol of the unit
@@ -113,7 +111,6 @@ contains
 
   !> Unit of a system.
   pure function unit_name(quantity, system) result(name)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
     integer, intent(in) :: system
     character(len=:), allocatable :: name
@@ -123,7 +120,6 @@ contains
 
   !> Unit of a system in SI units, a power of ten, by which a value in SI is divided.
   pure integer function decades_of(quantity, system) result(decades)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
     integer, intent(in) :: system
 
@@ -132,7 +128,6 @@ contains
 
   !> True: a value within the range of its kind of quantity.
   pure logical function in_range(quantity, value)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
     !> The value, SI
     real(wp), intent(in) :: value
@@ -142,7 +137,6 @@ contains
 
   !> SI units in a unit.
   pure real(wp) function size_of(quantity, name)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
     !> Symbol of the unit
     character(len=*), intent(in) :: name
@@ -156,7 +150,6 @@ contains
 
   !> The kind of quantity that has the units of another one.
   pure integer function dimension_of(quantity)
-    !> Kind of the quantity
     integer, intent(in) :: quantity
 
     dimension_of = quantity

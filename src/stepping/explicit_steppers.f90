@@ -46,7 +46,6 @@ module explicit_steppers
     procedure :: longest_step
     procedure :: steps_between_checks
     procedure :: steps_between_stages
-    procedure :: dissipates_in_contact
     procedure :: done
     procedure :: left
     procedure :: expected_steps
@@ -72,6 +71,7 @@ contains
 
     self%stepping = stepping
     self%smallest_step = stepping%time%step_min
+    self%dissipates_in_contact = .true.
     allocate (self%now, source=new_state(model))
     self%unknowns = count(.not. model%plate%constraints%fixed)
     if (.not. resumed .and. has_initial_motion(model)) &
@@ -219,13 +219,6 @@ contains
 
     steps_between_stages = interval_of_stages
   end function steps_between_stages
-
-  !> Nodes that meet come to rest against each other.
-  pure logical function dissipates_in_contact(self)
-    class(explicit_stepper_t), intent(in) :: self
-
-    dissipates_in_contact = .true.
-  end function dissipates_in_contact
 
   !> The completed steps.
   pure real(wp) function done(self)

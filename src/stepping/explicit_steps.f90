@@ -27,7 +27,11 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: kept
 
-    if (now%holds_damage .and. .not. now%time < model%plate%setup%loading%start) call release_damage(method, model, now)
+    ! Damage grows again in a plate that has come to rest.
+    if (now%holds_damage .and. .not. now%time < model%plate%setup%loading%start) then
+      call now%hold_damage(.false.)
+      if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
+    end if
     kept = 1
     if (is_damped(method, model, now)) call damp_motion(method, model%plate, now, method%parameters%settle, kept)
     call method%advance(model, event, kept, now)
@@ -43,16 +47,6 @@ contains
     if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
     call model%plate%profile%leave()
   end subroutine advance_explicit
-
-  !> Lets damage grow again in a plate that has come to rest.
-  subroutine release_damage(method, model, now)
-    type(central_difference_t), intent(inout) :: method
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: now
-
-    call now%hold_damage(.false.)
-    if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
-  end subroutine release_damage
 
   !> True while damping brings the plate to rest: before lines or an impactor begin to load it, or once the impactor has
   !> left the plate and moves away.

@@ -14,9 +14,10 @@ module implicit_steppers
   use models, only: model_t
   use motion_steps, only: motion_steps_t
   use setups, only: setup_t
-  use states, only: new_state
+  use states, only: new_state, state_t
   use step_acceptance, only: accept_step, assess_error, reject_step
-  use step_memories, only: save_state, step_memory_t
+  use step_controllers, only: step_controller_t
+  use step_errors, only: step_error_t
   use stepping_parameters, only: stepping_t
   use text, only: counted, line_t, to_text
   implicit none
@@ -33,8 +34,6 @@ module implicit_steppers
     procedure :: take_layers
     procedure :: visit
     procedure :: last_step
-    procedure :: rejected_steps
-    procedure :: exceeds_tolerance
     procedure :: model_sentences
     procedure :: method_name
     procedure :: energy_remedy
@@ -126,7 +125,9 @@ contains
     real(wp), intent(in) :: event
     logical, intent(out) :: switched
     type(error_t), allocatable, intent(out) :: error
-    type(step_memory_t) :: memory
+    type(state_t), allocatable :: now
+    type(step_controller_t) :: controller
+    type(step_error_t) :: step_error
     real(wp) :: extents(2, size(model%plate%mesh%zones))
     logical :: repeats, more
 
@@ -134,13 +135,21 @@ contains
     repeats = has_adaptive_layers(model)
     if (.not. repeats) call self%advance(model, event, error)
     do while (repeats)
-      memory = save_state(self)
+      now = self%now
+      controller = self%controller
+      step_error = self%step_error
       call self%advance(model, event, error)
       if (allocated(error)) return
       call model%plate%profile%enter('layers')
       call find_required_layers(model%plate, self%now, extents, more)
       repeats = more .and. any(self%now%interfaces%border_reached .and. model%plate%setup%delaminations%is_adaptive)
-      if (repeats) call memory%restore_state(self)
+      if (repeats) then
+        self%now = now
+        self%controller = controller
+        self%step_error = step_error
+        self%rejected = self%rejected + 1
+        self%operator%ready = .false.
+      end if
       if (more) call insert_layers(model, self, linear_solver, extents, error)
       switched = switched .or. more
       call model%plate%profile%leave()
@@ -181,20 +190,6 @@ contains
 
     last_step = self%controller%last
   end function last_step
-
-  !> Number of steps that were tried again with a shorter length.
-  pure integer function rejected_steps(self)
-    class(implicit_stepper_t), intent(in) :: self
-
-    rejected_steps = self%rejected
-  end function rejected_steps
-
-  !> True: the error of the last step exceeds its tolerance at the shortest length.
-  pure logical function exceeds_tolerance(self)
-    class(implicit_stepper_t), intent(in) :: self
-
-    exceeds_tolerance = self%error_exceeded
-  end function exceeds_tolerance
 
   !> The size of the model and the factorization package.
   function model_sentences(self, model) result(lines)

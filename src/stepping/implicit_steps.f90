@@ -38,15 +38,11 @@ module implicit_steps
     real(wp) :: error = 0, damage_lag = 0
     !> True: the length of steps is controlled by the error of each step
     logical :: is_error_controlled = .false.
-    !> True: the error of the last step exceeds the tolerance at the shortest step
-    logical :: error_exceeded = .false.
     type(plate_integrator_t) :: integrator
     !> Steps in time or by load
     class(step_kind_t), allocatable :: kind
     !> Factorizations and solves before the present step
     integer :: factorizations_at_start = 0, solves_at_start = 0
-    !> Rejected steps
-    integer :: rejected = 0
     !> The trial state
     type(state_t), allocatable :: trial
   contains

@@ -33,9 +33,10 @@ contains
     real(wp), intent(out) :: extents(:, :)
     !> True: they are larger than the present ones
     logical, intent(out) :: more
+    integer :: zone
 
     extents = required_extents(plate, now%plies%stiffness, now%interfaces, now%motion%displacement)
-    more = any(extents > present_extents(plate%setup))
+    more = any([(any(extents(:, zone) > plate%setup%delaminations(zone)%zone), zone=1, size(extents, 2))])
   end subroutine find_required_layers
 
   !> True if there are adaptive layers.
@@ -45,18 +46,6 @@ contains
     has_adaptive_layers = model%plate%map%layered
     if (has_adaptive_layers) has_adaptive_layers = any(model%plate%setup%delaminations%is_adaptive)
   end function has_adaptive_layers
-
-  !> Extents of the zones.
-  pure function present_extents(setup) result(extents)
-    type(setup_t), intent(in) :: setup
-    !> Full extents along x and y, (2, zones)
-    real(wp) :: extents(2, size(setup%delaminations))
-    integer :: zone
-
-    do zone = 1, size(extents, 2)
-      extents(:, zone) = setup%delaminations(zone)%zone
-    end do
-  end function present_extents
 
   !> Builds the model with larger zones and transfers the state to it.
   subroutine insert_layers(model, stepper, linear_solver, extents, error)
@@ -118,5 +107,4 @@ contains
     end do
     call plate%halo%update(field)
   end subroutine move_with_plate
-
 end module layer_switches

@@ -50,12 +50,19 @@ contains
     logical, intent(out) :: converged
     type(error_t), allocatable, intent(out) :: error
     type(static_step_t) :: by_load
+    type(dissipation_step_t) :: by_dissipation
 
     associate (now => stepper%now)
       step = stepper%step_scale(model%plate)
       step = step*stepper%controller%propose((event - now%time)/step, huge(step))
       if (now%path%by_dissipation) then
-        call try_dissipation(stepper, model, step, converged, error)
+        by_dissipation = new_dissipation_step(model%plate, now%time + step, stepper%energy_rate(model%plate)*step, &
+                                              1.0_wp/model%plate%setup%loading%steps)
+        call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
+                        converged, error)
+        ! With a larger change of the load another branch of equilibrium might be found that is not connected with the
+        ! path.
+        if (converged) converged = abs(stepper%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
       else
         by_load = new_static_step(model%plate, now%time + step, now%load_factor + step)
         call solve_step(by_load, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, converged, &
@@ -63,30 +70,6 @@ contains
       end if
     end associate
   end subroutine try
-
-  !> Tries a step that dissipates a given energy.
-  subroutine try_dissipation(stepper, model, step, converged, error)
-    !> The state accepted, the trial state and the step control
-    class(implicit_steps_t), intent(inout) :: stepper
-    type(model_t), intent(in) :: model
-    !> Step tried
-    real(wp), intent(in) :: step
-    !> True if equilibrium was reached
-    logical, intent(out) :: converged
-    !> Set if the solver fails for good
-    type(error_t), allocatable, intent(out) :: error
-    type(dissipation_step_t) :: by_dissipation
-
-    associate (now => stepper%now)
-      by_dissipation = new_dissipation_step(model%plate, now%time + step, stepper%energy_rate(model%plate)*step, &
-                                            1.0_wp/model%plate%setup%loading%steps)
-      call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
-                      converged, error)
-      ! With a larger change of the load another branch of equilibrium might be found that is not connected with the
-      ! path.
-      if (converged) converged = abs(stepper%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
-    end associate
-  end subroutine try_dissipation
 
   !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
   subroutine complete_trial(self, stepper, model)

@@ -8,7 +8,7 @@ module step_columns
   use states, only: state_t
   implicit none
   private
-  public :: motion_values, ledger_values, step_values, iteration_values, heat_values
+  public :: motion_values, ledger_values, step_values, iteration_values
 
   !> Motion of impactor and plate. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: motion_rows(*) = [character(len=result_row_length) :: &
@@ -95,15 +95,6 @@ contains
     values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, &
               ledger%ply_damage, ledger%contact, ledger%algorithmic, ledger%error()]
   end function ledger_values
-
-  !> Further entries of the ledger.
-  pure function heat_values(ledger) result(values)
-    type(ledger_t), intent(in) :: ledger
-    !> One value per column
-    real(wp) :: values(size(heat_rows))
-
-    values = [ledger%friction, ledger%layers]
-  end function heat_values
 
   !> Other quantities of the state, and the length of the step.
   pure function step_values(now, length) result(values)

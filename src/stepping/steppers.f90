@@ -28,6 +28,12 @@ module steppers
     integer :: unknowns = 0
     !> Shortest step
     real(wp) :: smallest_step = 0
+    !> Number of steps that were tried again with a shorter length
+    integer :: rejected = 0
+    !> True: the error of the last step exceeds its tolerance at the shortest length
+    logical :: error_exceeded = .false.
+    !> True: nodes that meet come to rest against each other, so that contact dissipates energy
+    logical :: dissipates_in_contact = .false.
   contains
     procedure(start_stepper), deferred :: start
     procedure(advance_stepper), deferred :: advance
@@ -43,11 +49,8 @@ module steppers
     procedure :: begin_inherited
     procedure :: complete_state
     procedure :: longest_step
-    procedure :: rejected_steps
-    procedure :: exceeds_tolerance
     procedure :: steps_between_checks
     procedure :: steps_between_stages
-    procedure :: dissipates_in_contact
     procedure :: done
     procedure :: left
     procedure :: expected_steps
@@ -185,20 +188,6 @@ contains
     longest_step = huge(1.0_wp)
   end function longest_step
 
-  !> Number of steps that were tried again with a shorter length.
-  pure integer function rejected_steps(self)
-    class(stepper_t), intent(in) :: self
-
-    rejected_steps = 0
-  end function rejected_steps
-
-  !> True: the error of the last step exceeds its tolerance at the shortest length.
-  pure logical function exceeds_tolerance(self)
-    class(stepper_t), intent(in) :: self
-
-    exceeds_tolerance = .false.
-  end function exceeds_tolerance
-
   !> Steps between two checks of a run. It is the same on any number of ranks and after a restart, as warnings are given
   !> at checks.
   pure integer function steps_between_checks(self, elements)
@@ -215,13 +204,6 @@ contains
 
     steps_between_stages = 1
   end function steps_between_stages
-
-  !> True: nodes that meet come to rest against each other, so that contact dissipates energy.
-  pure logical function dissipates_in_contact(self)
-    class(stepper_t), intent(in) :: self
-
-    dissipates_in_contact = .false.
-  end function dissipates_in_contact
 
   !> The completed part of a run, in time or steps, whichever the remainder is foreseen in.
   pure real(wp) function done(self)

@@ -33,7 +33,7 @@ OTHERS = (
     ("scales/unit_systems.f90", "g", "a unit of mass"),
     ("report/summary_file.f90", "case", "a name in NAME_summary.json"),
     ("report/summary_file.f90", "title", "a name in NAME_summary.json"),
-    ("report/summary_provenance.f90", "library", "a name in NAME_summary.json"),
+    ("report/summary_file.f90", "library", "a name in NAME_summary.json"),
     ("report/mapped_figures.f90", "energy", "a name in NAME_summary.json"),
     ("base/text.f90", "e", "the exponent of a number"),
     ("case/scale_tables.f90", "length mass time force energy pressure", "dimensions"),

@@ -177,15 +177,18 @@ def conventions():
     return {(name, kind): words_of(meaning) for names, kind, meaning in rows for name in re.findall(r"\w+", names)}
 
 
-def meaning_of(text):
-    """The words of the meaning that the table of names gives to an argument; None: it has none there."""
+def meanings_of(text):
+    """The words of the meanings that the table of names gives to arguments; None: one has none there."""
     found = DECLARATION.match(text)
-    entities = split_top(found.group(3)) if found else []
-    if len(entities) != 1:
-        return None
-    name, shape = re.match(r"(\w+)\s*(\(.*\))?", entities[0]).groups()
     kind = re.match(r"\w+(?:\s*\([\w=*: ]*\))?", text).group().replace("(wp)", "")
-    return CONVENTIONS.get((name, kind + (shape or "").replace(" ", "")))
+    words = set()
+    for entity in split_top(found.group(3)) if found else []:
+        name, shape = re.match(r"(\w+)\s*(\(.*\))?", entity).groups()
+        meaning = {name} if name in COMMON_ARGUMENTS else CONVENTIONS.get((name, kind + (shape or "").replace(" ", "")))
+        if meaning is None:
+            return None
+        words |= meaning
+    return words or None
 
 
 def needs_no_doc(text, is_argument):
@@ -193,7 +196,7 @@ def needs_no_doc(text, is_argument):
     names, of_type = names_and_type(text)
     known = words_of(of_type.replace("_", " "))
     common = COMMON_ARGUMENTS | NAMED_ARGUMENTS if is_argument else set()
-    return (is_argument and meaning_of(text) is not None) or all(
+    return (is_argument and meanings_of(text) is not None) or all(
         name in common or words_of(name.replace("_", " ")) <= known for name in names
     )
 
@@ -205,7 +208,7 @@ def is_redundant(text, doc, is_argument):
         return False
     if is_argument and names[0] in COMMON_ARGUMENTS and len(re.findall(r"\w+", doc)) <= MAX_COMMON_WORDS:
         return True
-    meaning = (meaning_of(text) if is_argument else None) or set()
+    meaning = (meanings_of(text) if is_argument else None) or set()
     return words_of(doc) <= words_of(names[0].replace("_", " ")) | words_of(of_type.replace("_", " ")) | meaning
 
 
