@@ -14,8 +14,7 @@ import check_style
 from fortran_units import read_modules
 
 # Names that only tests reach, and why they stay in the program.
-EXCEPTIONS: dict[str, str] = {
-}
+EXCEPTIONS: dict[str, str] = {}
 
 NAME = re.compile(r"(?<![\w%])([a-z]\w*)")
 UNKNOWN = None
