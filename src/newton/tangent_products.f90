@@ -146,7 +146,11 @@ contains
       if (allocated(cohesive)) then
         if (cohesive(i)) then
           self%jumps(:, :, i) = tangents(:, :, i)
-          self%softens = self%softens .or. softens(tangents(:, :, i))
+          ! The tangent may be indefinite where the damage of a point grows.
+          associate (t => tangents(:, :, i))
+            self%softens = self%softens .or. any([t(1, 1), t(2, 2), t(3, 3)] < 0) &
+                           .or. any(abs([t(1, 2), t(1, 3), t(2, 3)]) > 0)
+          end associate
         end if
       end if
       if (self%elements) cycle
@@ -183,15 +187,6 @@ contains
     call self%model%plate%communicator%maximum(largest)
     if (.not. largest > 0) deallocate (self%jumps)
   end subroutine drop_if_zero
-
-  !> True where the damage of a point grows, so that its tangent may be indefinite.
-  pure logical function softens(tangent)
-    !> Force per jump
-    real(wp), intent(in) :: tangent(3, 3)
-
-    softens = any([tangent(1, 1), tangent(2, 2), tangent(3, 3)] < 0) &
-              .or. any(abs([tangent(1, 2), tangent(1, 3), tangent(2, 3)]) > 0)
-  end function softens
 
   !> Adds the forces of elements and line supports.
   subroutine add_elements(self, motion, force)

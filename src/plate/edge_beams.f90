@@ -78,7 +78,8 @@ contains
     real(wp) :: values(9), slopes(9)
     integer :: g
 
-    beam%nodes = edge_nodes(along, side)
+    if (along == 1) beam%nodes = [1, 2, 3] + merge(6, 0, side > 0)
+    if (along == 2) beam%nodes = [1, 4, 7] + merge(2, 0, side > 0)
     do g = 1, 3
       call shapes_at(gauss(g), along, side, sides, values, slopes)
       associate (rows => beam%rows, place => g - 1, surface => surface_slopes(:, along))
@@ -100,16 +101,6 @@ contains
     beam%weights = sides(along)/2*[weights3, weights3, weights3, 1.0_wp, 1.0_wp]
     call set_inertia(section, height, along, share*sides(along), beam)
   end function new_edge_beam
-
-  !> Nodes of an element on one of its edges.
-  pure function edge_nodes(along, side) result(nodes)
-    !> Direction of the edge, and side of the element
-    integer, intent(in) :: along, side
-    integer :: nodes(3)
-
-    if (along == 1) nodes = [1, 2, 3] + merge(6, 0, side > 0)
-    if (along == 2) nodes = [1, 4, 7] + merge(2, 0, side > 0)
-  end function edge_nodes
 
   !> Shape functions at a point of an edge, and their derivatives along it.
   pure subroutine shapes_at(place, along, side, sides, values, slopes)
