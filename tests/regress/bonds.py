@@ -33,7 +33,7 @@ PLATES = {"implicit": ("step=2e-6", 4000, PLIES_FAIL, ("back",), (), 2e-4),
           "explicit": (EXPLICIT, 4000, PLIES_FAIL, ("front",), (), 2e-4),
           "interfaces": (EXPLICIT, 7000, "", ("back", "front"), (1, 2), 1.35e-4),
           "stiffened": (EXPLICIT, 7000, STRINGER + "\n", ("front",), (), 1.35e-4)}
-SAME = 1e-9  # measured: 1e-11
+SAME = 1e-8  # measured: 1.2e-9 after growth, which amplifies round-off, else 1e-11
 COLUMNS = ("force", "deflection", "impactor_velocity", "energy_strain", "delaminated_area", "energy_delamination",
            "projected_area", "area_below_3", "energy_error")
 

@@ -93,7 +93,7 @@ def check_kept(implam, folder, _):
 def check_dent(implam, folder, _):
     """Contact on the dent begins at once, and its law is that of reloading."""
     shutil.rmtree(folder, ignore_errors=True)
-    run([implam, deck_of(folder, IMPACT, YIELDING)], folder=folder)
+    run([implam, deck_of(folder, IMPACT, [*YIELDING, "time%end=0.8e-3"])], folder=folder)
     dent = summary_of(folder, IMPACT)["dent_indentation"]
     require(dent > 0, "The first impact has left no dent.")
     half = ["plate%symmetry='point'", "mesh%elements=10, 16", "impactor%at=0, 0", "impactor%velocity=2", *YIELDING]
