@@ -177,7 +177,9 @@ contains
     do direction = 1, 2
       line = cells_from_struck(old%setup%plate, old%setup%mesh, direction)
       line = line%from(old%setup%delaminations(zone)%zone_at(direction))
-      extents(direction) = line%extent_of(old%setup%delaminations(zone)%zone(direction)) + 2*distance(direction)
+      ! An edge of the plate may end the cells on one side; the extent is that of the side that reaches farther.
+      extents(direction) = 2*maxval(abs(line%span(line%within(old%setup%delaminations(zone)%zone(direction))))) &
+                           + 2*distance(direction)
       line = cells_from_struck(deck%setup%plate, deck%setup%mesh, direction)
       line = line%from(deck%setup%delaminations(zone)%zone_at(direction))
       extents(direction) = line%widened(extents(direction), 1)

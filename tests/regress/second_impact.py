@@ -17,7 +17,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from compression import CHECKPOINT, IMPACT, deck_of, strike
+from compression import CHECKPOINT, COMPRESSION, IMPACT, deck_of, strike
 from solver_runs import EXIT_STOPPED, change_deck, read_history, require, run
 
 SECOND = "second_impact"
@@ -144,6 +144,18 @@ def check_beside(implam, folder, launcher):
     require(filecmp.cmp(other, reference, shallow=False), "The history differs from the first one.")
 
 
+def check_covered(implam, folder, _):
+    """Layers beside an edge of the plate, about another centre, cover the damage when the panel is compressed."""
+    strike(implam, folder)
+    strike_again(implam, folder, ["impactor%at=-14e-3, 6e-3"])
+    settings = [f"initial_state%from='{SECOND}_restart.h5'", "plate%symmetry='none'", "mesh%elements=20, 16",
+                "time%settle=0.01e-3", "line%rise=0.02e-3", "time%end=0.05e-3"]
+    run([implam, deck_of(folder, COMPRESSION, settings)], folder=folder)
+    kept = [place["area_after"] / place["area_before"] for place in summary_of(folder, COMPRESSION)["mapping"]["interfaces"]]
+    print("areas after over before mapping: " + ", ".join(f"{share:.4f}" for share in kept))
+    require(min(kept) > 0.99, "The mapping has lost delaminated area.")
+
+
 def check_ten(implam, folder, _):
     """Each run begins with the end of the one before."""
     strike(implam, folder)
@@ -171,7 +183,7 @@ def check_ten(implam, folder, _):
 def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"elastic": check_elastic, "kept": check_kept, "dent": check_dent, "beside": check_beside,
-              "ranks": check_beside, "ten": check_ten}
+              "covered": check_covered, "ranks": check_beside, "ten": check_ten}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 
