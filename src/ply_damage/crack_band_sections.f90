@@ -330,7 +330,7 @@ contains
     type(composite_plate_t), intent(in) :: plate
 
     if (.not. allocated(self%volumes)) return
-    call self%volumes%update(plate%communicator, self%states, self%plies, self%area, plate%mesh%multiplicity)
+    call self%volumes%update(plate%communicator, plate%layup, self%states, self%plies, self%area)
     self%bands%along(1) = self%volumes%strengths()
   end subroutine update_strengths
 
