@@ -8,6 +8,7 @@ module layups
   use layered_meshes, only: layered_mesh_t
   use mean_stiffnesses, only: in_bending
   use mesh_parameters, only: image_signs
+  use ply_blocks, only: are_alike
   use ply_stacks, only: ply_stack_t
   use roundings, only: rounding
   use setups, only: setup_t
@@ -38,6 +39,8 @@ module layups
   contains
     procedure :: find_laminates
     procedure :: of_full_plate
+    procedure :: are_alike => have_same_plies
+    procedure :: are_images
     procedure :: assign_stacks
   end type layup_t
 
@@ -99,6 +102,31 @@ contains
 
     full = [(sum(modelled(self%images(ply, :))), ply=1, size(full))]
   end function of_full_plate
+
+  !> True if two laminates have plies of the same materials and angles at the same heights.
+  pure logical function have_same_plies(self, a, b) result(same)
+    class(layup_t), intent(in) :: self
+    !> The laminates
+    integer, intent(in) :: a, b
+    integer :: i
+
+    associate (mine => self%laminates(a)%plies, its => self%laminates(b)%plies)
+      same = size(mine) == size(its)
+      if (.not. same) return
+      same = all([(are_alike(mine(i), its(i)), i=1, size(mine))]) .and. &
+             all(abs([mine%z_top - its%z_top, mine%z_bottom - its%z_bottom]) <= rounding*self%thickness)
+    end associate
+  end function have_same_plies
+
+  !> True if each ply of a laminate is that of another with as many plies, or the image of it.
+  pure logical function are_images(self, a, b)
+    class(layup_t), intent(in) :: self
+    !> The laminates
+    integer, intent(in) :: a, b
+
+    are_images = all(minval(self%images(self%laminates(a)%number, :), 2) &
+                     == minval(self%images(self%laminates(b)%number, :), 2))
+  end function are_images
 
   !> Finds the stack of each layer of the mesh and of each of this rank's elements.
   pure subroutine assign_stacks(self, mesh, elements, has_free_strains)
