@@ -36,8 +36,8 @@ module stressed_volumes
     real(wp), private :: plate = 0
     !> Strength of each ply for that volume
     real(wp), allocatable, private :: xt(:)
-    !> Block of each ply: the number of its first ply of the laminate, the same one in all stacks, or, if it has none, of
-    !> its first ply
+    !> Block of each ply: the number of its first ply of the laminate, the same one in all stacks; of plies of a doubler
+    !> alone that of the first
     integer, allocatable, private :: block(:)
     !> Block of each ply of the plate, or of its image where it is not modelled; 0: neither is modelled
     integer, allocatable, private :: of_ply(:)
