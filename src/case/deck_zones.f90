@@ -120,39 +120,26 @@ contains
   pure logical function zones_are_symmetric(deck, signs) result(alike)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: signs(2)
+    real(wp) :: distance
     integer :: i, k
 
     alike = .true.
+    distance = rounding*maxval(deck%setup%plate%length)
     associate (zones => deck%setup%zones)
       if (allocated(zones%doublers)) then
         do i = 1, size(zones%doublers)
-          alike = alike .and. any([(is_image(zones%doublers(i), zones%doublers(k), signs, &
-                                           maxval(deck%setup%plate%length)) &
-                                    .and. have_same_plies(zones%doublers(i), zones%doublers(k)), &
-                                    k=1, size(zones%doublers))])
+          alike = alike .and. any([(zones%doublers(i)%is_image_of(zones%doublers(k), signs, distance) .and. &
+                                    have_same_plies(zones%doublers(i), zones%doublers(k)), k=1, size(zones%doublers))])
         end do
       end if
       if (allocated(zones%drops)) then
         do i = 1, size(zones%drops)
-          alike = alike .and. any([(is_image(zones%drops(i), zones%drops(k), signs, &
-                                           maxval(deck%setup%plate%length)) .and. &
+          alike = alike .and. any([(zones%drops(i)%is_image_of(zones%drops(k), signs, distance) .and. &
                                     have_same_drops(zones%drops(i), zones%drops(k)), k=1, size(zones%drops))])
         end do
       end if
     end associate
   end function zones_are_symmetric
-
-  !> True if a zone lies where the image of another one does.
-  pure logical function is_image(zone, other, signs, length) result(alike)
-    !> The zone, and the other one
-    class(ply_zone_t), intent(in) :: zone, other
-    integer, intent(in) :: signs(2)
-    !> Of the plate
-    real(wp), intent(in) :: length
-
-    alike = all(abs(zone%at*signs - other%at) <= rounding*length) .and. &
-            all(abs(zone%size - other%size) <= rounding*length)
-  end function is_image
 
   !> True if two doublers have the same plies on the same face, both bonded rigidly or both by an interface.
   pure logical function have_same_plies(a, b) result(same)

@@ -18,6 +18,7 @@ module ply_zone_parameters
     procedure :: contains => zone_contains
     procedure :: overlaps
     procedure :: edges
+    procedure :: is_image_of
   end type ply_zone_t
 
   !> Plies bonded to a face of the laminate.
@@ -74,6 +75,19 @@ contains
 
     overlaps = all(abs(self%at - other%at) < (self%size + other%size)/2 - distance)
   end function overlaps
+
+  !> True if a zone lies where the image of another one does.
+  pure logical function is_image_of(self, other, signs, distance) result(alike)
+    class(ply_zone_t), intent(in) :: self
+    !> The other one
+    class(ply_zone_t), intent(in) :: other
+    !> Signs of x and y of the image
+    integer, intent(in) :: signs(2)
+    !> Difference of lengths that is round-off
+    real(wp), intent(in) :: distance
+
+    alike = all(abs(self%at*signs - other%at) <= distance) .and. all(abs(self%size - other%size) <= distance)
+  end function is_image_of
 
   !> Coordinates of the two edges of a zone across a direction.
   pure function edges(self, direction)

@@ -26,6 +26,7 @@ module ply_zones
     procedure :: material
     procedure :: doubler_of
     procedure :: stations
+    procedure :: images
     procedure :: find_stacks
     procedure :: find_combinations
     procedure :: everywhere
@@ -97,6 +98,37 @@ contains
       end associate
     end do
   end function stations
+
+  !> Ply at the image of each ply's place: plies of a doubler have numbers of their own, and other ones at its image.
+  pure function images(self, skin, signs, distance) result(image)
+    class(ply_zones_t), intent(in) :: self
+    !> Number of plies of the laminate
+    integer, intent(in) :: skin
+    !> Signs of x and y of the image
+    integer, intent(in) :: signs(2)
+    !> Difference of lengths that is round-off
+    real(wp), intent(in) :: distance
+    !> Its number, of each ply of the plate
+    integer :: image(skin + self%plies())
+    integer, allocatable :: first(:)
+    integer :: i, k, ply
+
+    image = [(ply, ply=1, size(image))]
+    if (.not. allocated(self%doublers)) return
+    allocate (first(size(self%doublers) + 1))
+    first(1) = skin + 1
+    do i = 1, size(self%doublers)
+      first(i + 1) = first(i) + size(self%doublers(i)%laminate%material)
+    end do
+    do i = 1, size(self%doublers)
+      do k = 1, size(self%doublers)
+        ! Doublers on one face do not overlap.
+        if (self%doublers(i)%face /= self%doublers(k)%face) cycle
+        if (self%doublers(i)%is_image_of(self%doublers(k), signs, distance)) &
+          image(first(i):first(i + 1) - 1) = [(ply, ply=first(k), first(k + 1) - 1)]
+      end do
+    end do
+  end function images
 
   !> Indices of the materials of the plies of all doublers, in the order of their numbers.
   pure function material(self) result(indices)

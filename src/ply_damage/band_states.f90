@@ -122,23 +122,26 @@ contains
     type(composite_plate_t), intent(in) :: plate
     integer, parameter :: numbers = 3 + energy_modes
     real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked, cracked
-    integer :: element, entry, ply
+    integer :: element, entry, ply, i
 
     ! A column has all plies of the plate, so that, when an element is split into layers, each layer can read its
-    ! plies from the column of the undivided element.
+    ! plies from the column of the undivided element, and an element beyond the modelled part from that of its image.
     allocate (table(numbers*plate%layup%plies, size(self%offset)), strains(2*plate%layup%plies, size(self%offset)), &
               closed(2*plate%layup%plies, size(self%offset)), kinked(plate%layup%plies, size(self%offset)), &
               cracked(plate%layup%plies, size(self%offset)), &
               source=0.0_wp)
     do element = 1, size(self%offset)
       do entry = self%range(1, element), self%range(2, element)
-        ply = self%number(entry)
-        associate (state => self%accepted(self%offset(element) + entry))
-          table((ply - 1)*numbers + 1:ply*numbers, element) = [state%damage, state%shear_damage, state%dissipated]
-          strains(2*ply - 1:2*ply, element) = [state%permanent, state%accumulated]
-          closed(2*ply - 1:2*ply, element) = state%closed
-          kinked(ply, element) = state%kinked
-          cracked(ply, element) = state%strengthened
+        associate (state => self%accepted(self%offset(element) + entry), &
+                   images => plate%layup%images(self%number(entry), :))
+          do i = 1, size(images)
+            ply = images(i)
+            table((ply - 1)*numbers + 1:ply*numbers, element) = [state%damage, state%shear_damage, state%dissipated]
+            strains(2*ply - 1:2*ply, element) = [state%permanent, state%accumulated]
+            closed(2*ply - 1:2*ply, element) = state%closed
+          end do
+          kinked(images, element) = state%kinked
+          cracked(images, element) = state%strengthened
         end associate
       end do
     end do

@@ -161,7 +161,7 @@ contains
       associate (first => self%states%range(1, element), last => self%states%range(2, element), &
                  offset => self%states%offset(element))
         call self%joined%accumulate_strains(element, moments(lane, :), &
-                                            sizes(lane, 1) + self%limits(lane, 2, b)*sizes(lane, 2), first, &
+                                            sizes(lane, 1) + self%limits(lane, 2, b)*sizes(lane, 2), &
                                             self%plies(first:last), self%bands(first:last), &
                                             self%states%accepted(offset + first:offset + last))
       end associate
@@ -250,7 +250,8 @@ contains
           new = old
           ! The bound of `strain_sizes` for one ply.
           if (is_damaged(old) .or. .not. membrane + self%height(ply)*curvature < self%onset(ply)) then
-            call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
+            call find_elastic_strains(ply - first + 1, self%plies(ply), self%bands(ply), moments, joined, means, new, &
+                                      strains)
             if (self%strengths_vary .or. may_soften(self%bands(ply), strains, old)) &
               call soften_ply(self, element, ply, joined, strains, new)
           end if
@@ -330,7 +331,7 @@ contains
     type(composite_plate_t), intent(in) :: plate
 
     if (.not. allocated(self%volumes)) return
-    call self%volumes%update(plate%communicator, self%states, self%plies, self%area, plate%mesh%multiplicity)
+    call self%volumes%update(plate%communicator, plate%layup, self%states, self%plies, self%area)
     self%bands%along(1) = self%volumes%strengths()
   end subroutine update_strengths
 

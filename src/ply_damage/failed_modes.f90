@@ -111,11 +111,16 @@ contains
     class(failed_modes_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
     type(composite_plate_t), intent(in) :: plate
+    logical, allocatable :: of_images(:, :, :)
     real(wp), allocatable :: table(:, :)
-    integer :: element, ply
+    integer :: element, ply, i
 
     if (.not. allocated(self%occurred)) return
-    table = reshape(merge(1.0_wp, 0.0_wp, self%occurred), [size(self%occurred, 1)*size(self%occurred, 2), &
+    of_images = self%occurred
+    do i = 2, size(plate%layup%images, 2)
+      of_images = of_images .or. self%occurred(:, plate%layup%images(:, i), :)
+    end do
+    table = reshape(merge(1.0_wp, 0.0_wp, of_images), [size(self%occurred, 1)*size(self%occurred, 2), &
                                                           size(self%occurred, 3)])
     call archive%field('ply_failure/occurred', plate%distribution%elements, plate%mesh%elements(), table, ply_field)
     self%occurred = reshape(table, shape(self%occurred)) > 0

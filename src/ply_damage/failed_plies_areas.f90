@@ -37,7 +37,10 @@ contains
         end do
       end associate
     end do
-    areas = reshape(totals_of(plate%communicator, [sums]), shape(areas))*plate%mesh%multiplicity
+    areas = reshape(totals_of(plate%communicator, [sums]), shape(areas))
+    do mode = 1, failure_modes
+      areas(mode, :) = plate%layup%of_full_plate(areas(mode, :))
+    end do
   end function failed_areas
 
   !> Number of ply elements failed in each mode, of the full plate. Collective.

@@ -40,7 +40,7 @@ module joined_elements
     !> Area of each, (numbers)
     real(wp), allocatable, private :: area(:)
     !> Moments of the strains of each, a bound of its strains, and, where shear strains may be permanent, mean squares
-    !> of the elastic shear strains of its plies, (moment_values + 1 + plies, numbers)
+    !> of the elastic shear strains of its plies in their order, (moment_values + 1 + plies, numbers)
     real(wp), allocatable, private :: moments(:, :)
     !> Number of means: of moments, and of plies
     integer :: values = moment_values
@@ -71,7 +71,7 @@ contains
     associate (mesh => plate%mesh, elements => plate%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
       do element = 1, mesh%elements()
-        call find_parts(mesh, element, plate%setup%impactor%is_present, parts(:, element), joined(:, element))
+        call find_parts(plate, element, parts(:, element), joined(:, element))
       end do
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)
@@ -86,7 +86,7 @@ contains
       end do
     end associate
     if (plate%setup%ply_damage%permanent_shear) self%values = moment_values &
-      + sum([(size(plate%layup%laminates(element)%plies), element=1, size(plate%layup%laminates))])
+      + maxval([(size(plate%layup%laminates(element)%plies), element=1, size(plate%layup%laminates))])
     allocate (self%moments(self%values + 1, size(self%area)), source=0.0_wp)
     allocate (self%concerned(plate%elements%batches), source=.false.)
     do element = 1, size(self%number)
@@ -113,40 +113,58 @@ contains
 
   !> The modelled elements joined with an element, including itself, ascending, then zeros, and the axes along which it
   !> is joined beyond its side. Elements with other layers are not joined.
-  pure subroutine find_parts(mesh, element, is_struck, parts, joined)
-    type(layered_mesh_t), intent(in) :: mesh
+  pure subroutine find_parts(plate, element, parts, joined)
+    type(composite_plate_t), intent(in) :: plate
     !> Element of the mesh
     integer, intent(in) :: element
-    !> True: there is an impactor
-    logical, intent(in) :: is_struck
     !> Elements of the mesh
     integer, intent(out) :: parts(most)
     !> Along x and y
     logical, intent(out) :: joined(2)
     integer :: places(2, most), range(2), direction, known, i, other
 
-    range = mesh%plies_of(element)
-    places(:, 1) = mesh%place_of(mesh%element_cell(element))
-    joined = mesh%struck_side(places(:, 1)) /= 0 .and. (mesh%halved .or. is_struck)
-    known = 1
-    do direction = 1, 2
-      if (.not. joined(direction) .or. mesh%mirrored(direction)) cycle
-      do i = 1, known
-        places(:, known + i) = place_beyond(mesh, places(:, i), direction)
+    associate (mesh => plate%mesh)
+      range = mesh%plies_of(element)
+      places(:, 1) = mesh%place_of(mesh%element_cell(element))
+      joined = mesh%struck_side(places(:, 1)) /= 0 .and. (mesh%halved .or. plate%setup%impactor%is_present)
+      known = 1
+      do direction = 1, 2
+        if (.not. joined(direction) .or. mesh%mirrored(direction)) cycle
+        do i = 1, known
+          places(:, known + i) = place_beyond(mesh, places(:, i), direction)
+        end do
+        known = 2*known
       end do
-      known = 2*known
-    end do
-    parts = 0
-    do i = 1, known
-      other = mesh%element_at(mesh%cell_at(places(1, i), places(2, i)), range(1))
-      if (mesh%element_layer(other) /= mesh%element_layer(element)) then
-        parts = 0
-        joined = .false.
-        return
-      end if
-      call insert(parts, other)
-    end do
+      parts = 0
+      do i = 1, known
+        other = mesh%element_at(mesh%cell_at(places(1, i), places(2, i)), range(1))
+        if (.not. have_same_plies(plate, mesh%element_layer(element), mesh%element_layer(other))) then
+          parts = 0
+          joined = .false.
+          return
+        end if
+        call insert(parts, other)
+      end do
+    end associate
   end subroutine find_parts
+
+  !> True if two layers have the same plies within the same laminates. Those of a doubler and its image have other
+  !> numbers. Where strengths depend on the place, other doublers may have other strengths.
+  pure logical function have_same_plies(plate, a, b) result(same)
+    type(composite_plate_t), intent(in) :: plate
+    !> Numbers of the layers
+    integer, intent(in) :: a, b
+    integer :: first, second
+
+    same = a == b
+    if (same) return
+    first = plate%mesh%layers(a)%laminate
+    second = plate%mesh%layers(b)%laminate
+    same = all(plate%mesh%layers(a)%plies == plate%mesh%layers(b)%plies) .and. &
+           size(plate%layup%stacks(a)%plies) == size(plate%layup%stacks(b)%plies) .and. &
+           plate%layup%are_alike(first, second)
+    if (same .and. plate%setup%ply_damage%weibull_modulus > 0) same = plate%layup%are_images(first, second)
+  end function have_same_plies
 
   !> Position of the modelled cell that lies, itself or its image, beyond a cell's side on a line through the struck
   !> point.
@@ -188,7 +206,7 @@ contains
   end function shares
 
   !> Stores an element's strains.
-  pure subroutine accumulate_strains(self, element, values, bound, first, plies, bands, states)
+  pure subroutine accumulate_strains(self, element, values, bound, plies, bands, states)
     class(joined_elements_t), intent(inout) :: self
     !> Element of this rank that shares its state
     integer, intent(in) :: element
@@ -196,8 +214,6 @@ contains
     real(wp), intent(in) :: values(moment_values)
     !> Upper bound of the strains of its plies
     real(wp), intent(in) :: bound
-    !> First ply of the element
-    integer, intent(in) :: first
     !> Its plies
     type(ply_t), intent(in) :: plies(:)
     !> Their laws
@@ -216,7 +232,7 @@ contains
         strains = strains_of_ply(plies(ply), moments_from(values))
         state = states(ply)
         call flow_band(bands(ply), strains, state)
-        column(moment_values + first + ply) = strains%shear_square
+        column(moment_values + 1 + ply) = strains%shear_square
       end do
     end associate
   end subroutine accumulate_strains
@@ -305,9 +321,9 @@ contains
   end function means_of
 
   !> Elastic strains of a ply of an element with those joined with it, and the permanent shear strain of this element.
-  pure subroutine find_elastic_strains(number, ply, band, moments, joined, means, state, strains)
-    !> Number of the ply
-    integer, intent(in) :: number
+  pure subroutine find_elastic_strains(place, ply, band, moments, joined, means, state, strains)
+    !> Place of the ply among those of the element
+    integer, intent(in) :: place
     type(ply_t), intent(in) :: ply
     !> Its law
     type(crack_band_t), intent(in) :: band
@@ -329,7 +345,7 @@ contains
     end if
     own = strains_of_ply(ply, moments)
     call flow_band(band, own, state)
-    strains%shear_square = means(moment_values + number)
+    strains%shear_square = means(moment_values + place)
   end subroutine find_elastic_strains
 
   !> Upper bounds of the strains of all plies of a batch, and of all elements with a common state.

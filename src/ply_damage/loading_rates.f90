@@ -107,14 +107,16 @@ contains
     !> Number of each ply among those of the plate
     integer, intent(in) :: number(:)
     real(wp), allocatable :: table(:, :)
-    integer :: element, ply, row
+    integer :: element, ply, row, i
 
-    ! A column has all plies of the plate, as those of the states.
+    ! A column has all plies of the plate, with those of images, as those of the states.
     allocate (table(values*plate%layup%plies, size(offset)), source=0.0_wp)
     do element = 1, size(offset)
       do ply = range(1, element), range(2, element)
-        row = values*(number(ply) - 1)
-        table(row + 1:row + values, element) = self%accepted(:, offset(element) + ply)
+        do i = 1, size(plate%layup%images, 2)
+          row = values*(plate%layup%images(number(ply), i) - 1)
+          table(row + 1:row + values, element) = self%accepted(:, offset(element) + ply)
+        end do
       end do
     end do
     call archive%field('ply_failure/loading_rates', plate%distribution%elements, plate%mesh%elements(), table, &

@@ -19,14 +19,16 @@ contains
     type(crack_band_sections_t), intent(inout) :: sections
     real(wp) :: lost(3, size(sections%area)), differences(size(sections%area))
     logical :: unequal(size(sections%area))
-    integer :: ply, element, i
+    integer :: place, element, i
 
     unequal = .false.
-    do ply = 1, size(sections%states%number)
+    do place = 0, size(sections%states%number) - 1
       lost = 0
       do element = 1, size(sections%area)
-        if (ply < sections%states%range(1, element) .or. ply > sections%states%range(2, element)) cycle
-        lost(:, element) = stiffness_lost(sections%states%accepted(sections%states%offset(element) + ply))
+        associate (ply => sections%states%range(1, element) + place)
+          if (ply > sections%states%range(2, element)) cycle
+          lost(:, element) = stiffness_lost(sections%states%accepted(sections%states%offset(element) + ply))
+        end associate
       end do
       do i = 1, size(lost, 1)
         differences = sections%joined%differences(lost(i, :))

@@ -12,6 +12,7 @@ module stressed_volumes
   use communicators, only: communicator_t
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
+  use layups, only: layup_t
   use composite_plates, only: composite_plate_t
   use plies, only: ply_t
   use ply_blocks, only: block_of
@@ -35,11 +36,12 @@ module stressed_volumes
     real(wp), private :: plate = 0
     !> Strength of each ply for that volume
     real(wp), allocatable, private :: xt(:)
-    !> Number of each ply among those of the plate
-    integer, allocatable, private :: number(:)
-    !> First ply of the block of each ply, the same one in all laminates
+    !> Block of each ply: the number of its first ply of the laminate, the same one in all stacks; of plies of a doubler
+    !> alone that of the first
     integer, allocatable, private :: block(:)
-    !> Stressed volume of the block that begins with each ply, of the full plate; 0: its fibres are not in tension
+    !> Block of each ply of the plate, or of its image where it is not modelled; 0: neither is modelled
+    integer, allocatable, private :: of_ply(:)
+    !> Stressed volume of each block, of the full plate, (plies of the plate); 0: its fibres are not in tension
     real(wp), allocatable, private :: volume(:)
     !> 1: fibres of the block have failed, and its volume is constant, otherwise 0
     real(wp), allocatable, private :: failed(:)
@@ -63,20 +65,28 @@ contains
     !> States of the plies of all elements
     type(band_states_t), intent(in) :: states
     type(stressed_volumes_t) :: self
-    integer :: i, ply, entry, range(2)
+    integer :: i, ply, place, range(2)
 
     self%damage = plate%setup%ply_damage
     self%plate = product(plate%setup%plate%length)*plate%layup%thickness
     self%xt = bands%along(1)
-    allocate (self%stress(size(states%trial)), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
-    allocate (self%block(size(bands)))
-    self%number = states%number
-    entry = 0
+    allocate (self%stress(size(states%trial)), self%volume(plate%layup%plies), self%failed(plate%layup%plies), &
+              source=0.0_wp)
+    allocate (self%block(0))
     do i = 1, size(plate%layup%laminates)
-      do ply = 1, size(plate%layup%laminates(i)%plies)
-        entry = entry + 1
-        range = block_of(plate%layup%laminates(i)%plies, ply)
-        self%block(entry) = findloc(states%number, plate%layup%laminates(i)%number(range(1)), dim=1)
+      associate (laminate => plate%layup%laminates(i))
+        do ply = 1, size(laminate%plies)
+          range = block_of(laminate%plies, ply)
+          ! Plies of doublers have the largest numbers.
+          self%block = [self%block, minval(laminate%number(range(1):range(2)))]
+        end do
+      end associate
+    end do
+    allocate (self%of_ply(plate%layup%plies), source=0)
+    do i = size(plate%layup%images, 2), 1, -1
+      do ply = 1, size(self%of_ply)
+        place = findloc(states%number, plate%layup%images(ply, i), dim=1)
+        if (place > 0) self%of_ply(ply) = self%block(place)
       end do
     end do
   end function new_stressed_volumes
@@ -135,7 +145,9 @@ contains
     class(stressed_volumes_t), intent(in) :: self
     integer, intent(in) :: ply
 
-    associate (block => self%block(findloc(self%number, ply, dim=1)))
+    volume = 0
+    if (self%of_ply(ply) == 0) return
+    associate (block => self%of_ply(ply))
       volume = self%failed(block)*self%volume(block)
     end associate
   end function volume_at_failure
@@ -151,37 +163,34 @@ contains
   end subroutine clear
 
   !> Volumes of the accepted state. Collective.
-  subroutine update(self, communicator, states, plies, area, multiplicity)
+  subroutine update(self, communicator, layup, states, plies, area)
     class(stressed_volumes_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
+    type(layup_t), intent(in) :: layup
     type(band_states_t), intent(in) :: states
     type(ply_t), intent(in) :: plies(:)
     !> Area of each element of this rank
     real(wp), intent(in) :: area(:)
-    !> Images of the modelled part in the full plate
-    integer, intent(in) :: multiplicity
-    real(wp), allocatable :: extremes(:, :)
-    type(exact_sum_t), allocatable :: sums(:)
-    integer :: i
+    real(wp) :: extremes(size(self%volume), 2), volume(size(self%volume))
+    type(exact_sum_t) :: sums(size(self%volume))
+    integer :: i, k
 
     if (all(self%failed(self%block) > 0)) return
-    allocate (extremes(size(plies), 2))
     call find_extremes(self, states, extremes)
     call communicator%maximum(extremes(:, 1))
     call communicator%maximum(extremes(:, 2))
+    extremes = reshape([((maxval(extremes(layup%images(i, :), k)), i=1, size(volume)), k=1, 2)], shape(extremes))
     self%failed = max(self%failed, extremes(:, 2))
-    allocate (sums(size(plies)))
     call add_volumes(self, states, plies, area, extremes(:, 1), sums)
-    associate (open => pack([(i, i=1, size(plies))], extremes(:, 1) > 0 .and. .not. self%failed > 0))
-      self%volume(open) = totals_of(communicator, sums(open))*multiplicity
-    end associate
+    volume = layup%of_full_plate(totals_of(communicator, sums))
+    where (extremes(:, 1) > 0 .and. .not. self%failed > 0) self%volume = volume
   end subroutine update
 
   !> Largest stress of each block on this rank, and whether its fibres have failed.
   pure subroutine find_extremes(self, states, extremes)
     type(stressed_volumes_t), intent(in) :: self
     type(band_states_t), intent(in) :: states
-    !> Stress, and 1 where fibres have failed, of the blocks that begin with each ply, (plies, 2)
+    !> Stress, and 1 where fibres have failed, of each block, (plies of the plate, 2)
     real(wp), intent(out) :: extremes(:, :)
     integer :: element, ply
 

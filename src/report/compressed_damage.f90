@@ -6,7 +6,7 @@ module compressed_damage
   use delamination_parameters, only: law_cohesive
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
-  use mesh_parameters, only: symmetry_point
+  use mesh_parameters, only: image_signs
   use composite_plates, only: composite_plate_t
   use ply_damage_parameters, only: fibre_failure
   use rank_totals, only: totals_of
@@ -51,7 +51,7 @@ contains
     integer, intent(in) :: along
     type(compressed_damage_t) :: damage
     type(collected_t) :: interfaces(size(plate%mesh%zones)), plies(plate%layup%plies)
-    integer :: i
+    integer :: i, parts
 
     do i = 1, size(interfaces)
       interfaces(i) = delaminated(plate, now, along, i)
@@ -59,8 +59,9 @@ contains
     do i = 1, size(plies)
       plies(i) = fibres_failed(plate, now, along, i)
     end do
-    damage%interfaces = figures_of(plate, along, interfaces)
-    damage%plies = figures_of(plate, along, plies)
+    parts = size(plate%layup%images, 2)
+    damage%interfaces = figures_of(plate, along, interfaces, spread([(i, i=1, size(interfaces))], 2, parts))
+    damage%plies = figures_of(plate, along, plies, plate%layup%images)
   end function damage_of
 
   !> Length between the supports of the plate along an axis: that of the window of its frame, or of the plate.
@@ -164,31 +165,37 @@ contains
     if (row > 0) self%rows(row) = 1
   end subroutine add
 
-  !> Quantities from the contributions of all ranks. Collective.
-  function figures_of(plate, along, collected) result(figures)
+  !> Quantities of the full plate from the contributions of all ranks. Collective.
+  function figures_of(plate, along, collected, images) result(figures)
     type(composite_plate_t), intent(in) :: plate
     !> Axis of the load
     integer, intent(in) :: along
     !> Contribution of this rank for each interface or ply
     type(collected_t), intent(in) :: collected(:)
+    !> Interface or ply at the images of each, itself first, (interfaces or plies, parts of the plate)
+    integer, intent(in) :: images(:, :)
     !> (figures, interfaces or plies)
     real(wp) :: figures(number_of_figures, size(collected))
-    real(wp) :: sums(2*size(collected)), reach(size(collected))
-    real(wp), allocatable :: rows(:)
+    real(wp) :: sums(size(collected), 2), reach(size(collected))
+    real(wp) :: rows(plate%mesh%cells(3 - along), size(collected))
     integer :: i
 
-    sums = totals_of(plate%communicator, [collected%area, collected%moment])
+    sums = reshape(totals_of(plate%communicator, [collected%area, collected%moment]), shape(sums))
     reach = collected%reach
     call plate%communicator%maximum(reach)
+    do i = 1, size(collected)
+      rows(:, i) = collected(i)%rows
+      call plate%communicator%maximum(rows(:, i))
+    end do
     figures = 0
     do i = 1, size(collected)
-      rows = collected(i)%rows
-      call plate%communicator%maximum(rows)
-      if (.not. sums(i) > 0) cycle
-      figures(figure_area, i) = sums(i)*plate%mesh%multiplicity
-      figures(figure_mean, i) = sums(size(collected) + i)/sums(i)
-      figures(figure_reach, i) = reach(i)
-      figures(figure_width, i) = share_of_width(plate, along, rows > 0)
+      associate (area => sum(sums(images(i, :), 1)), moment => sum(sums(images(i, :), 2)))
+        if (.not. area > 0) cycle
+        figures(figure_area, i) = area
+        figures(figure_mean, i) = moment/area
+      end associate
+      figures(figure_reach, i) = maxval(reach(images(i, :)))
+      figures(figure_width, i) = share_of_width(plate, along, rows(:, images(i, :)) > 0)
     end do
   end function figures_of
 
@@ -198,19 +205,31 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Axis of the load
     integer, intent(in) :: along
-    !> True for rows with failure
-    logical, intent(in) :: failed(:)
-    real(wp) :: widths(size(failed)), middles(size(failed))
-    logical :: either(size(failed))
+    !> True for modelled rows with failure in each image, (rows, parts of the plate)
+    logical, intent(in) :: failed(:, :)
+    real(wp) :: widths(size(failed, 1)), middles(size(failed, 1))
+    logical :: either(size(failed, 1), 2)
+    integer :: signs(2, size(failed, 2)), part, side
 
     widths = plate%mesh%along(3 - along)%sides()
     middles = plate%mesh%along(3 - along)%middles()
-    either = failed
-    ! With point symmetry failure in a row implies failure in its image.
-    if (plate%setup%plate%symmetry == symmetry_point .and. along == 1) either = failed .or. failed(size(failed):1:-1)
+    signs(:, 1) = 1
+    signs(:, 2:) = image_signs(plate%setup%plate%symmetry)
+    ! Rows on both sides of the line of symmetry, if it is along the load, otherwise all rows twice.
+    either = .false.
+    do part = 1, size(failed, 2)
+      if (plate%mesh%halved(3 - along)) then
+        side = merge(1, 2, signs(3 - along, part) > 0)
+        either(:, side) = either(:, side) .or. failed(:, part)
+      else if (signs(3 - along, part) > 0) then
+        either = either .or. spread(failed(:, part), 2, 2)
+      else
+        either = either .or. spread(failed(size(failed, 1):1:-1, part), 2, 2)
+      end if
+    end do
     widths = merge(widths, 0.0_wp, abs(middles) < between_supports(plate, 3 - along)/2 - plate%layup%thickness)
     share = 0
-    if (sum(widths) > 0) share = sum(widths, mask=either)/sum(widths)
+    if (sum(widths) > 0) share = (sum(widths, mask=either(:, 1)) + sum(widths, mask=either(:, 2)))/(2*sum(widths))
   end function share_of_width
 
   !> Saves or loads the damage.
