@@ -81,7 +81,6 @@ contains
     class(ply_zone_t), intent(in) :: self
     !> The other one
     class(ply_zone_t), intent(in) :: other
-    !> Signs of x and y of the image
     integer, intent(in) :: signs(2)
     !> Difference of lengths that is round-off
     real(wp), intent(in) :: distance

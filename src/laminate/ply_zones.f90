@@ -104,7 +104,6 @@ contains
     class(ply_zones_t), intent(in) :: self
     !> Number of plies of the laminate
     integer, intent(in) :: skin
-    !> Signs of x and y of the image
     integer, intent(in) :: signs(2)
     !> Difference of lengths that is round-off
     real(wp), intent(in) :: distance
