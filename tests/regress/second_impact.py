@@ -6,6 +6,7 @@ kept     on the mesh of the first run the state before the contact is that of it
 dent     at the same place the contact begins in the dent of the first run, elsewhere and with another law without one
 beside   at another place, on other mesh lines: damage is kept while the panel comes to rest and grows from there; from
          a checkpoint within the run: bitwise
+covered  an impact beside an edge, then a compression on another mesh: its layers cover all of the damage
 ranks    the same on three ranks: bitwise
 ten      ten impacts at three places: areas never shrink, the ledgers close"""
 
@@ -151,7 +152,8 @@ def check_covered(implam, folder, _):
     settings = [f"initial_state%from='{SECOND}_restart.h5'", "plate%symmetry='none'", "mesh%elements=20, 16",
                 "time%settle=0.01e-3", "line%rise=0.02e-3", "time%end=0.05e-3"]
     run([implam, deck_of(folder, COMPRESSION, settings)], folder=folder)
-    kept = [place["area_after"] / place["area_before"] for place in summary_of(folder, COMPRESSION)["mapping"]["interfaces"]]
+    mapping = summary_of(folder, COMPRESSION)["mapping"]
+    kept = [place["area_after"] / place["area_before"] for place in mapping["interfaces"]]
     print("areas after over before mapping: " + ", ".join(f"{share:.4f}" for share in kept))
     require(min(kept) > 0.99, "The mapping has lost delaminated area.")
 
