@@ -497,7 +497,7 @@ def check_aside(implam, folder, _):
     histories, layers = [], []
     for side in (1, -1):
         shutil.rmtree(folder, ignore_errors=True)
-        run([implam, deck_of(folder, IMPACT, [*whole, f"impactor%at=0, {side * ASIDE}", "impactor%velocity=6"])],
+        run([implam, deck_of(folder, IMPACT, [*whole, f"impactor%at=0, {side * ASIDE}", "impactor%velocity=4.7"])],
             folder=folder)
         deck = folder / deck_of(folder, COMPRESSION, [whole[0], "mesh%elements=28, 22", "time%settle=0.12e-3",
                                                        "time%end=0.21e-3"])

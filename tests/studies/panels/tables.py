@@ -89,12 +89,13 @@ def panel_lines(name, panel, rows):
 
 
 def cost_of(rows):
-    """Return the number of runs and their cost."""
+    """Return the number of runs, their cost and the versions of the program that made them."""
     if not rows:
         return "No run yet."
     hours = number(sum(float(row["minutes"]) for row in rows) / 60, 2)
     state = ", of the decks before their last change" if any("earlier" in row for row in rows) else ""
-    return f"Runs: {len(rows)}, {hours} hours of one core{state}."
+    versions = ", ".join(dict.fromkeys(row["version"].removesuffix("-modified") for row in rows))
+    return f"Runs: {len(rows)}, {hours} hours of one core{state}, by {versions}."
 
 
 def variant_lines(name, panel, rows):
