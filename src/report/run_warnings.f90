@@ -108,6 +108,7 @@ contains
       call add('below_nose', now%impact%depth_below_impactor(model) > limit_of('below_nose')*thickness)
     call add('steps', stepper%exceeds_tolerance())
     call add('mapping', record%mapping%raises_strain())
+    call add('plies', record%mapping%loses_plies())
     if (is_new(record, 'slopes')) call add('slopes', is_steep(model%plate, now))
     if (is_new(record, 'stringer') .and. have_strengths(deck)) &
       call add('stringer', weakest_stringer(model%plate, now%motion%displacement) > 0)
