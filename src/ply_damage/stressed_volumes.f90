@@ -239,5 +239,24 @@ contains
 
     call archive%item('ply_failure/stressed_volumes', self%volume)
     call archive%item('ply_failure/failed_fibres', self%failed)
+    if (size(self%volume) == size(self%of_ply)) return
+    self%volume = of_blocks(self%volume)
+    self%failed = of_blocks(self%failed)
+
+  contains
+
+    !> Values of version 0.2, which were stored with the first ply of each block among those of all laminates.
+    pure function of_blocks(stored) result(values)
+      !> One of each ply of all laminates
+      real(wp), intent(in) :: stored(:)
+      !> Those of the blocks
+      real(wp) :: values(size(self%of_ply))
+      integer :: i
+
+      values = 0
+      do i = 1, size(stored)
+        values(self%block(i)) = max(values(self%block(i)), stored(i))
+      end do
+    end function of_blocks
   end subroutine visit
 end module stressed_volumes

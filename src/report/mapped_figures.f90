@@ -37,6 +37,7 @@ module mapped_figures
     procedure :: note
     procedure :: is_cut
     procedure :: first_loss
+    procedure :: loses_plies
     procedure :: raises_strain
     !> Lines for the log: quantities of damage, strain energy, and what is cut away.
     procedure :: line
@@ -113,6 +114,16 @@ contains
     first_loss = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
                     self%energy(:, 2) < (1 - tolerance)*self%energy(:, 1), .true., dim=1)
   end function first_loss
+
+  !> True if the area of plies times their damage has fallen; their energies are no means over area where shear strains
+  !> are permanent.
+  pure logical function loses_plies(self)
+    class(mapped_figures_t), intent(in) :: self
+
+    loses_plies = .false.
+    if (allocated(self%plies)) loses_plies = any(self%plies(:2, after_mapping) &
+                                                 < (1 - tolerance)*self%plies(:2, before_mapping))
+  end function loses_plies
 
   !> True if the strain energy has risen by more than 1 % of what was stored: mapped damage and displacements do not fit
   !> to each other, and stresses may cause further damage.

@@ -69,7 +69,9 @@ module warning_rows
     warning_row_t('mapping', 0.0_wp, 'The mapping to this mesh has raised the strain energy by more than 1 % of what &
       &was stored (energy_strain of `mapping` in the summary): {remedy}'), &
     warning_row_t('stringer', 0.0_wp, 'The free edge of a stringer has exceeded its strength (XT, XC of &stringer) &
-      &since {at}: stringers do not fail in this model; later results are not valid where it would.')]
+      &since {at}: stringers do not fail in this model; later results are not valid where it would.'), &
+    warning_row_t('plies', 0.0_wp, 'Damage of plies was lost in the mapping to this mesh (fibre_damage_area and &
+      &matrix_damage_area of `mapping` in the summary): use the mesh of the other run.')]
 
 contains
 
