@@ -265,7 +265,8 @@ def try_ranks(implam, folder, launcher):
     for ranks in (1, 3):
         path = folder / str(ranks) / "deck.nml"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(SMALL.format(at="2,4", more="", end=2.2e-4, rest=""), encoding="utf-8")
+        text = SMALL.format(at="2,4", more="", end=2.2e-4, rest="").replace("velocity=6000", "velocity=8000")
+        path.write_text(text, encoding="utf-8")
         histories.append(run_deck(implam, path, [*launcher, str(ranks)]))
         require_same(histories[-1], histories[0], f"{ranks} ranks")
     require_same(go_on(implam, copy_run(folder / "1", folder / "again")), histories[0], "restart")
