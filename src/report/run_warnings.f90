@@ -108,7 +108,7 @@ contains
       call add('below_nose', now%impact%depth_below_impactor(model) > limit_of('below_nose')*thickness)
     call add('steps', stepper%error_exceeded)
     call add('mapping', record%mapping%raises_strain())
-    call add('plies', record%mapping%loses_plies())
+    call add('plies_lost', record%mapping%loses_plies())
     if (is_new(record, 'slopes')) call add('slopes', model%plate%communicator%any( &
                                            maxval(abs(now%motion%displacement(4:5, :))) > limit_of('slopes')))
     if (is_new(record, 'stringer') .and. &

@@ -70,7 +70,7 @@ module warning_rows
       &was stored (energy_strain of `mapping` in the summary): {remedy}'), &
     warning_row_t('stringer', 0.0_wp, 'The free edge of a stringer has exceeded its strength (XT, XC of &stringer) &
       &since {at}: stringers do not fail in this model; later results are not valid where it would.'), &
-    warning_row_t('plies', 0.0_wp, 'Damage of plies was lost in the mapping to this mesh (fibre_damage_area and &
+    warning_row_t('plies_lost', 0.0_wp, 'Damage of plies was lost in the mapping to this mesh (fibre_damage_area and &
       &matrix_damage_area of `mapping` in the summary): use the mesh of the other run.')]
 
 contains
