@@ -61,8 +61,13 @@ contains
   !> Number of plies of all doublers.
   pure integer function plies(self)
     class(ply_zones_t), intent(in) :: self
+    integer :: i
 
-    plies = size(self%material())
+    plies = 0
+    if (.not. allocated(self%doublers)) return
+    do i = 1, size(self%doublers)
+      plies = plies + size(self%doublers(i)%laminate%material)
+    end do
   end function plies
 
   !> Doubler of a ply; 0: there is none.
