@@ -37,12 +37,10 @@ contains
     real(wp), intent(in) :: jumps(3, 2)
     !> Lengths along the direction of growth that belong to the point and to the node ahead
     real(wp), intent(in) :: widths(2)
-    real(wp) :: works(3), shear, opening, toughness, opened_jumps(3, 2)
+    real(wp) :: works(3), shear, opening, toughness
 
     ! Closed surfaces behind the front release nothing, although the pressure on it does work on their overlap.
-    opened_jumps = jumps
-    opened_jumps(3, :) = max(0.0_wp, jumps(3, :))
-    works = (widths(1)*tractions(:, 1)*opened_jumps(:, 2) + widths(2)*tractions(:, 2)*opened_jumps(:, 1)) &
+    works = (widths(1)*tractions(:, 1)*opened(jumps(:, 2)) + widths(2)*tractions(:, 2)*opened(jumps(:, 1))) &
             /(2*sum(widths))
     shear = max(0.0_wp, works(1) + works(2))
     opening = max(0.0_wp, works(3))

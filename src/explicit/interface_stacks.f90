@@ -3,6 +3,7 @@ module interface_stacks
   use archives, only: archive_t
   use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
   use cohesive_laws, only: cohesive_law_t
+  use cohesive_points, only: opened
   use field_mappings, only: vector_fields
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
@@ -194,8 +195,10 @@ contains
       to = u(1:3, p)
       from = to - self%history(p)%change
       ! The pressure of surfaces in contact is not part of the law.
-      if (prevents_penetration(plate, plate%zone(p))) from(3) = max(0.0_wp, from(3))
-      if (prevents_penetration(plate, plate%zone(p))) to(3) = max(0.0_wp, to(3))
+      if (prevents_penetration(plate, plate%zone(p))) then
+        from = opened(from)
+        to = opened(to)
+      end if
       self%history(p)%work = sum(self%stiffness([1, 1, 2], p)*(to**2 - from**2))/2
     end do
   end subroutine mark_damaged

@@ -78,7 +78,7 @@ contains
       end do
     end if
     self%section = section_of(self%laminates(1)%plies, setup%laminate%shear_correction)
-    self%struck = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(setup%mesh%struck))
+    self%struck = setup%struck_stack()
     local = setup%struck_laminate()
     self%struck_thickness = sum(local%thickness)
     self%bending_section = section_of(in_bending(stacked_plies(local, setup%materials)), local%shear_correction)

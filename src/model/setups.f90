@@ -8,6 +8,7 @@ module setups
   use material_parameters, only: material_t, modulus_differs
   use laminate_parameters, only: laminate_t
   use ply_damage_parameters, only: ply_damage_t
+  use ply_stacks, only: ply_stack_t
   use ply_zones, only: ply_zones_t
   use delamination_parameters, only: delamination_t
   implicit none
@@ -35,6 +36,7 @@ module setups
     procedure :: used_materials
     procedure :: all_plies
     procedure :: struck_laminate
+    procedure :: struck_stack
     procedure :: has_crack_bands
     procedure :: is_bimodular
     procedure :: has_rates
@@ -86,6 +88,14 @@ contains
     laminate = self%laminate
     if (.not. self%zones%is_empty()) laminate = self%zones%laminate_of(laminate, self%zones%at(self%mesh%struck))
   end function struck_laminate
+
+  !> The same plies with their numbers among those of the plate, at their heights there.
+  pure function struck_stack(self) result(stack)
+    class(setup_t), intent(in) :: self
+    type(ply_stack_t) :: stack
+
+    stack = self%zones%stack(self%laminate, self%materials, self%zones%at(self%mesh%struck))
+  end function struck_stack
 
   !> True: plies soften by their fracture energies, instead of sudden failure.
   pure logical function has_crack_bands(self)

@@ -263,7 +263,7 @@ contains
     integer :: i, k, interfaces
 
     section = section_of_laminate(setup, setup%struck_laminate())
-    stack = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(setup%mesh%struck))
+    stack = setup%struck_stack()
     interfaces = size(forces)
     do i = 1, size(forces)
       if (.not. setup%delaminations(i)%bonds_doublers()) cycle
@@ -288,7 +288,7 @@ contains
     force = 0
     plies = in_bending(stacked_plies(setup%struck_laminate(), setup%materials))
     if (size(plies) < 2 .or. .not. setup%mesh%patch > 0) return
-    stack = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(setup%mesh%struck))
+    stack = setup%struck_stack()
     unit = unit_stresses_of(plies)
     ! Q = P/(2 pi r): its derivative is -Q/r along the radius, and +Q/r for the component normal to it.
     decrease = pi/(2*setup%mesh%patch)
