@@ -18,7 +18,7 @@ module element_steps
   use ply_failures, only: ply_failure_t, new_ply_failure
   use setups, only: setup_t
   use section_bounds, only: largest_stiffness
-  use stable_steps, only: highest_element_frequency, stiffened_frequency
+  use stable_steps, only: find_stiffened_frequency, highest_element_frequency
   implicit none
   private
   public :: smallest_element_step, small_setup
@@ -65,7 +65,7 @@ contains
     type(inertia_scaling_t) :: scaling
     type(error_t), allocatable :: error
     real(wp), allocatable :: of_elements(:, :)
-    real(wp) :: frequency
+    real(wp) :: frequency, steep
     integer :: element, direction
 
     step = 0
@@ -83,8 +83,9 @@ contains
     call highest_element_frequency(model%plate, largest_stiffness(plies), scaling, frequency, element, of_elements)
     if (present(slope)) then
       do direction = 1, 2
-        frequency = max(frequency, stiffened_frequency(model%plate, largest_stiffness(plies), of_elements, &
-                                                       sloped_motion(model%plate, slope, direction)))
+        call find_stiffened_frequency(model%plate, largest_stiffness(plies), of_elements, &
+                                      sloped_motion(model%plate, slope, direction), steep)
+        frequency = max(frequency, steep)
       end do
     end if
     if (frequency > 0) step = 2/frequency

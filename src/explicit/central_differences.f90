@@ -22,7 +22,7 @@ module central_differences
   use rank_totals, only: total_of
   use rig_steps, only: add_clamp_forces, create_rig_steps
   use section_bounds, only: largest_stiffness
-  use stable_steps, only: highest_element_frequency, stiffened_frequency
+  use stable_steps, only: find_sprung_elements, find_stiffened_frequency, highest_element_frequency, sprung_elements_t
   use stack_motions, only: move_stacks, nodal_steps_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t, commensurate_step
@@ -51,8 +51,11 @@ module central_differences
     type(front_onsets_t), private :: onsets
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
-    !> Highest frequency of the undeformed elements, and that allowed for by the step
+    !> Highest frequency of the undeformed elements, and with slopes and tension that allowed for by the step
     real(wp) :: frequency = 0, stiffened = 0
+    !> Square of the frequency that slopes and tension add below the impactor, and elements there with contact springs
+    real(wp), private :: sloped = 0
+    type(sprung_elements_t), private :: sprung
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
     real(wp), allocatable, private :: of_elements(:, :)
     !> Element with the highest frequency
@@ -104,6 +107,8 @@ contains
     self%impact%patch%offset = merge(-now%impact%patch%touched_at, now%impact%patch%offset, allocated(model%nose))
     self%impact%patch%inverse = self%impact%patch%points%gathered(model%plate%communicator, &
                                                                   self%inertia%inverse_of_images())
+    call find_sprung_elements(model%plate, largest_stiffness(now%plies), scaling, self%impact%patch%points%local, &
+                              self%sprung)
     allocate (self%force(5, size(model%plate%distribution%points)), self%field(5, model%plate%borders%columns), &
               self%strain(lanes, model%plate%elements%batches), source=0.0_wp)
     self%motion = self%force
@@ -112,23 +117,26 @@ contains
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
 
-  !> Stable step of elements and contact times step_factor, theory (T6). The highest frequency with added springs is at
-  !> most the root of the sum of the squares of the frequencies.
+  !> Stable step of elements and contact times step_factor, theory (T6). Elements below the impactor have the springs
+  !> of the contact on w.
   real(wp) function longest_step(self, plate, now) result(step)
     class(central_difference_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
     type(state_t), intent(in) :: now
-    real(wp) :: frequency, square
+    real(wp) :: frequency, sloped, square
 
     if (depends_on_slopes(plate%elements, plate%setup%mesh%kinematics) .and. &
         modulo(now%step, steps_between_frequencies) == 0) then
-      frequency = stiffened_frequency(plate, largest_stiffness(now%plies), self%of_elements, self%motion)
+      call find_stiffened_frequency(plate, largest_stiffness(now%plies), self%of_elements, self%motion, frequency, &
+                                    self%sprung, sloped)
       if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
         self%stiffened = stiffened_reserve*frequency
+      if (sloped > self%sloped .or. sloped < lengthening_ratio**2*self%sloped) self%sloped = stiffened_reserve**2*sloped
     end if
     square = self%stiffened**2
     if (plate%setup%impactor%is_present) &
-      square = square + self%impact%contact_frequency_square(plate, now%impact%indentation)
+      square = max(square, self%sloped &
+                           + self%sprung%bound(self%impact%contact_frequency_square(plate, now%impact%indentation)))
     step = self%parameters%stable_step(sqrt(square))
   end function longest_step
 
@@ -326,6 +334,7 @@ contains
     call archive%item('explicit/initial_work', self%initial_work)
     call archive%item('explicit/frequency', self%stiffened)
     self%stiffened = max(self%stiffened, self%frequency)
+    call archive%item('explicit/sloped', self%sloped)
     call model%plate%visit_points(archive, 'explicit/forces', self%force, motion_field)
     call self%rigs%visit(archive, model%plate)
     call self%impact%visit(archive)

@@ -14,9 +14,9 @@ module impactor_steps
   private
   public :: impactor_steps_t
 
-  !> Factor of the contact stiffness for which a new step length is chosen, so that the length changes only a few times.
-  !> A step limited by contact is shorter by a factor of sqrt(2) at most.
-  real(wp), parameter :: slope_reserve = 2
+  !> Allowance for an increase of the square of the contact's frequency, and ratio of that square to the one allowed for
+  !> below which the latter is reduced: the step length changes a few times in a contact.
+  real(wp), parameter :: reserve = 1.1_wp, reduction = 0.6_wp
 
   !> The impactor.
   type :: impactor_steps_t
@@ -24,8 +24,8 @@ module impactor_steps
     type(struck_patch_t) :: patch
     !> Its velocity at the middle of the last step
     real(wp) :: velocity = 0
-    !> Contact stiffness allowed for by the step
-    real(wp) :: contact_stiffness = 0
+    !> Square of the contact's frequency allowed for by the step
+    real(wp) :: frequency_square = 0
     !> Work of a prescribed travel
     real(wp) :: work = 0
     !> Energy lost by changes of the step length
@@ -40,26 +40,31 @@ module impactor_steps
 
 contains
 
-  !> Square of the frequency of the contact spring between the impactor and the mass under the patch, with the largest
-  !> stiffness so far times this factor, theory (T6). The contact with a nose adds the springs of its points, of which
-  !> the stiffest on the lightest mass is a bound.
+  !> Square of the frequency of the contact between the impactor and the mass under the patch that the step has to allow
+  !> for, theory (T6). A nose is a spring to each of its points, of which the stiffest on the lightest mass
+  !> is a bound, and, where the law is steeper than Hertz's for this force, one to their mean.
   real(wp) function contact_frequency_square(self, plate, indentation) result(square)
     class(impactor_steps_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
     type(indentation_t), intent(in) :: indentation
-    real(wp) :: slope, compliance, inverse_mass
+    real(wp) :: slope, inverse_mass
 
-    slope = self%patch%gain**2*indentation_stiffness(plate%setup%impactor%indentation, indentation, indentation%alpha)
     inverse_mass = 0
     if (.not. plate%setup%impactor%travel > 0) inverse_mass = 1/plate%setup%impactor%mass
-    associate (patch => self%patch, &
-               force => indentation_force(plate%setup%impactor%indentation, indentation, indentation%alpha))
-      compliance = sum(patch%weights**2*patch%inverse)/plate%mesh%multiplicity + inverse_mass
-      if (any(patch%slopes > 0)) slope = slope + patch%gain*force/compliance* &
-        (maxval(patch%slopes*patch%inverse)/plate%mesh%multiplicity + sum(patch%slopes)*inverse_mass)
+    associate (patch => self%patch, law => plate%setup%impactor%indentation, copies => plate%mesh%multiplicity)
+      slope = indentation_stiffness(law, indentation, indentation%alpha)
+      square = 0
+      if (any(patch%slopes > 0)) then
+        associate (force => indentation_force(law, indentation, indentation%alpha))
+          slope = max(0.0_wp, slope - 1.5_wp*force/indentation%alpha)
+          square = patch%gain*force*(maxval(patch%slopes*patch%inverse)/copies + sum(patch%slopes)*inverse_mass)
+        end associate
+      end if
+      square = square + patch%gain**2*slope*(sum(patch%weights**2*patch%inverse)/copies + inverse_mass)
     end associate
-    if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
-    square = self%contact_stiffness*compliance
+    if (square > self%frequency_square .or. square < reduction*self%frequency_square) &
+      self%frequency_square = reserve*square
+    square = self%frequency_square
   end function contact_frequency_square
 
   !> Places the impactor at first contact with the deflected face, or in the dent of an earlier run. Collective.
@@ -164,7 +169,7 @@ contains
 
     call self%patch%visit(archive)
     call archive%item('explicit/impactor_velocity', self%velocity)
-    call archive%item('explicit/contact_stiffness', self%contact_stiffness)
+    call archive%item('explicit/contact_frequency', self%frequency_square)
     call archive%item('explicit/travel_work', self%work)
     call archive%item('explicit/impactor_loss', self%loss)
   end subroutine visit

@@ -2,7 +2,8 @@
 !>
 !> No frequency of the assembled plate lies above the highest frequency of a single element with its own part of the
 !> inertia (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2; `element_frequencies`).
-!> Interfaces, clamps and frames are implicit and do not limit the step.
+!> Interfaces, clamps and frames are implicit and do not limit the step. The contact is a spring on w of the elements
+!> below the impactor, with which their frequencies are tabulated.
 module stable_steps
   use batch_resultants, only: in_plane_resultants
   use batch_strains, only: strains_of_batch
@@ -15,7 +16,7 @@ module stable_steps
   use reference_fields, only: gather, reference_values
   implicit none
   private
-  public :: highest_element_frequency, stiffened_frequency
+  public :: highest_element_frequency, find_stiffened_frequency, sprung_elements_t, find_sprung_elements
 
   !> Largest ratio of the integral of the squared gradient of a deflection of nine nodes to the integral of its square,
   !> lumped by Simpson's rule, in an element of sides 2: 6 by the derivative along one side, 1.2 by that along the
@@ -23,8 +24,68 @@ module stable_steps
   real(wp), parameter :: gradient_bound = 7.2_wp
   !> The same on a line of three nodes.
   real(wp), parameter :: line_gradient_bound = 6
+  !> Springs of the table of `sprung_elements_t` over the square of the highest frequency without springs
+  real(wp), parameter :: tabulated(*) = [0.0_wp, 0.25_wp, 0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp]
+
+  !> Highest frequency of elements with springs that act on w, theory (T6).
+  type :: sprung_elements_t
+    !> Stiffness over inertia of the springs, and squares of the highest frequency with them
+    real(wp) :: springs(size(tabulated)) = 0, squares(size(tabulated)) = 0
+    !> True for batches with such elements
+    logical, allocatable :: batches(:)
+  contains
+    procedure :: bound
+  end type sprung_elements_t
 
 contains
+
+  !> Bound of the square of the highest frequency with springs. The square is a convex function of the springs, which
+  !> lies below the chords of the table, and beyond it increases by the springs at most.
+  pure real(wp) function bound(self, spring) result(square)
+    class(sprung_elements_t), intent(in) :: self
+    !> Stiffness over inertia
+    real(wp), intent(in) :: spring
+    integer :: i
+
+    associate (x => self%springs, y => self%squares)
+      square = y(size(y)) + spring - x(size(x))
+      do i = size(x) - 1, 1, -1
+        if (spring < x(i + 1)) square = y(i) + (y(i + 1) - y(i))*(spring - x(i))/(x(i + 1) - x(i))
+      end do
+    end associate
+  end function bound
+
+  !> Tabulates the highest frequency of the elements at some points. Collective.
+  subroutine find_sprung_elements(plate, stiffness, scaling, points, self)
+    type(composite_plate_t), intent(in) :: plate
+    real(wp), intent(in) :: stiffness(:, :, :)
+    type(inertia_scaling_t), intent(in) :: scaling
+    !> Points of this rank; 0: of another one
+    integer, intent(in) :: points(:)
+    type(sprung_elements_t), intent(out) :: self
+    real(wp) :: sprung(5, size(plate%distribution%points)), sections(lanes, 3, plate%elements%batches)
+    real(wp), allocatable :: beams(:, :)
+    integer :: b, i
+
+    allocate (self%batches(plate%elements%batches))
+    sprung = 0
+    sprung(:, pack(points, points > 0)) = 1
+    call plate%halo%update(sprung)
+    sections = scaling%sections(plate)
+    beams = scaling%beams(plate)
+    do b = 1, plate%elements%batches
+      self%batches(b) = any(sprung(1, reshape(plate%elements%points(:plate%elements%lanes_used(b), :, b), &
+                                              [9*plate%elements%lanes_used(b)])) > 0)
+    end do
+    do i = 1, size(tabulated)
+      if (i == 2) self%springs = tabulated*self%squares(1)
+      do b = 1, plate%elements%batches
+        if (self%batches(b)) self%squares(i) = max(self%squares(i), maxval( &
+          batch_frequencies(plate%elements, b, stiffness(:, :, b), sections(:, :, b), beams, self%springs(i))))
+      end do
+      call plate%communicator%maximum(self%squares(i))
+    end do
+  end subroutine find_sprung_elements
 
   !> Highest angular frequency of all elements, and the number of the element. Collective.
   subroutine highest_element_frequency(plate, stiffness, scaling, omega, element, of_elements)
@@ -69,18 +130,25 @@ contains
   !> squares of both frequencies are added. With linear strains the slopes are those of the stress-free shape, and N
   !> does not act. The curvature of a surface along which u and v are measured is part of `of_elements`, not of the
   !> slopes. Collective.
-  real(wp) function stiffened_frequency(plate, stiffness, of_elements, motion) result(omega)
+  subroutine find_stiffened_frequency(plate, stiffness, of_elements, motion, omega, sprung, sloped)
     type(composite_plate_t), intent(in) :: plate
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
     real(wp), contiguous, intent(in) :: of_elements(:, :)
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
-    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), unused(lanes), added(lanes)
+    !> The bound
+    real(wp), intent(out) :: omega
+    !> Elements below the impactor, for the square of the frequency that slopes and tension add there at most
+    type(sprung_elements_t), intent(in), optional :: sprung
+    !> The square
+    real(wp), intent(out), optional :: sloped
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), unused(lanes), added(lanes), below
     real(wp), parameter :: unit_area(lanes, 9) = 1
     integer :: b
 
     omega = 0
+    below = 0
     unused = 0
     do b = 1, plate%elements%batches
       call gather(plate%elements%points(:, :, b), motion, r)
@@ -92,10 +160,15 @@ contains
                                                  slopes, strains)/max(smallest_divisor, plate%elements%mass(:, 1, b))
       if (plate%elements%has_beams(b)) call raise_by_beams(plate, b, r, added)
       omega = max(omega, maxval(of_elements(:, b) + added))
+      if (.not. present(sprung)) cycle
+      if (sprung%batches(b)) below = max(below, maxval(added))
     end do
     call plate%communicator%maximum(omega)
     omega = sqrt(omega)
-  end function stiffened_frequency
+    if (.not. present(sloped)) return
+    call plate%communicator%maximum(below)
+    sloped = below
+  end subroutine find_stiffened_frequency
 
   !> Raises the bound of elements with beams to that of their beams, if it is larger: the frequency of both together is
   !> at most the higher of those of each with its own inertia.

@@ -34,7 +34,7 @@ contains
   end function pseudo_random
 
   !> Squares of the highest frequencies of the elements of a batch: largest eigenvalue of K M^-1 by Lanczos iteration.
-  function batch_frequencies(elements, b, stiffness, section, beams) result(squares)
+  function batch_frequencies(elements, b, stiffness, section, beams, springs) result(squares)
     type(element_batches_t), intent(in) :: elements
     integer, intent(in) :: b
     !> Section stiffness
@@ -43,6 +43,8 @@ contains
     real(wp), intent(in) :: section(lanes, 3)
     !> Scaled I0, I1, I2 of the beams, (3, beams)
     real(wp), intent(in) :: beams(:, :)
+    !> Stiffness over inertia of springs that act on w at every node
+    real(wp), intent(in), optional :: springs
     !> (lane)
     real(wp) :: squares(lanes)
     real(wp) :: inverse(lanes, 9, 4), r(lanes, 9, 5), before(lanes, 9, 5), force(lanes, 9, 5), response(lanes, 9, 5)
@@ -59,6 +61,7 @@ contains
       if (lanczos_step > 0) then
         force = response
         call batch_force(elements, b, stiffness, force)
+        if (present(springs)) force(:, :, 3) = force(:, :, 3) + springs*response(:, :, 3)/inverse(:, :, 4)
         diagonal(:, lanczos_step) = sum(sum(force*response, 3), 2)
         force = force - times_factors(r, diagonal(:, lanczos_step)) &
                 - times_factors(before, off_diagonal(:, lanczos_step - 1))
