@@ -6,9 +6,11 @@ module placed_gauges
   use gauges, only: face_back, face_front, gauge_t
   use kinds, only: wp
   use mathematical_constants, only: degree
+  use mesh_parameters, only: image_signs
   use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
+  use roundings, only: rounding
   use strain_recovery, only: nodal_strains
   implicit none
   private
@@ -71,20 +73,41 @@ contains
     if (abs(sum(strains)) > 0) bending = 100*(strains(1) - strains(2))/sum(strains)
   end function percent_bending
 
-  !> Adds the strain of a gauge: that of its cell, or the mean over the cells that meet there. Only cells of this rank
-  !> contribute.
+  !> Adds the strain of a gauge: the mean over its images in the modelled part, of which there are several on a line of
+  !> symmetry.
   subroutine add_strain(plate, gauge, motion, total)
     type(composite_plate_t), intent(in) :: plate
     type(gauge_t), intent(in) :: gauge
     real(wp), intent(in) :: motion(:, :)
     !> Receives the strain
     type(exact_sum_t), intent(inout) :: total
+    integer, allocatable :: signs(:, :)
+    integer :: k
+
+    signs = modelled_images(plate, gauge)
+    do k = 1, size(signs, 2)
+      call add_image(plate, gauge, motion, signs(:, k), size(signs, 2), total)
+    end do
+  end subroutine add_strain
+
+  !> Adds the part of an image: that of its cell, or the mean over the cells that meet there. Only cells of this rank
+  !> contribute.
+  subroutine add_image(plate, gauge, motion, signs, images, total)
+    type(composite_plate_t), intent(in) :: plate
+    type(gauge_t), intent(in) :: gauge
+    real(wp), intent(in) :: motion(:, :)
+    integer, intent(in) :: signs(2)
+    !> Number of images
+    integer, intent(in) :: images
+    !> Receives the strain
+    type(exact_sum_t), intent(inout) :: total
     real(wp) :: at(2), angle, direction(3)
     integer, allocatable :: columns(:), rows(:)
     integer :: element, cell, i, j
 
-    call find_place(plate, gauge, at, angle)
-    direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
+    at = signs*gauge%at
+    angle = product(signs)*gauge%angle*degree
+    direction = [cos(angle)**2, sin(angle)**2, sin(angle)*cos(angle)]
     columns = plate%mesh%along(1)%touching(at(1))
     rows = plate%mesh%along(2)%touching(at(2))
     do j = 1, size(rows)
@@ -96,10 +119,10 @@ contains
         if (element == 0) cycle
         call total%add(dot_product(direction, surface_strain(plate, gauge, motion, element, &
           [part_of(plate%mesh%along(1)%ends(columns(i)), at(1)), part_of(plate%mesh%along(2)%ends(rows(j)), at(2))]))/ &
-          (size(columns)*size(rows)))
+          (size(columns)*size(rows)*images))
       end do
     end do
-  end subroutine add_strain
+  end subroutine add_image
 
   !> Strain of a surface in an element.
   function surface_strain(plate, gauge, motion, element, place) result(strain)
@@ -124,25 +147,20 @@ contains
     strain = mean(1:3) + z*mean(4:6)
   end function surface_strain
 
-  !> Position of a gauge or its image in the modelled part, and its direction there.
-  pure subroutine find_place(plate, gauge, at, angle)
+  !> Signs of x and y of the images of a gauge, itself included, that lie in the modelled part, (2, images).
+  pure function modelled_images(plate, gauge) result(signs)
     type(composite_plate_t), intent(in) :: plate
     type(gauge_t), intent(in) :: gauge
-    !> The point
-    real(wp), intent(out) :: at(2)
-    !> The direction, degrees
-    real(wp), intent(out) :: angle
+    integer, allocatable :: signs(:, :)
+    integer, allocatable :: others(:, :)
+    real(wp) :: least(2)
     integer :: k
 
-    at = gauge%at
-    angle = gauge%angle
-    if (plate%mesh%halved(1) .and. .not. plate%mesh%mirrored(1) .and. at(1) < 0) at = -at
-    do k = 1, 2
-      if (.not. (plate%mesh%mirrored(k) .and. at(k) < 0)) cycle
-      at(k) = -at(k)
-      angle = -angle
-    end do
-  end subroutine find_place
+    others = image_signs(plate%setup%plate%symmetry)
+    signs = reshape([1, 1, others], [2, 1 + size(others, 2)])
+    least = merge(-rounding*plate%setup%plate%length, -huge(least), plate%mesh%halved)
+    signs = signs(:, pack([(k, k=1, size(signs, 2))], [(all(signs(:, k)*gauge%at >= least), k=1, size(signs, 2))]))
+  end function modelled_images
 
   !> Position of a coordinate in a cell, from 0 to 1.
   pure real(wp) function part_of(ends, at) result(part)

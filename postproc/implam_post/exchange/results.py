@@ -14,7 +14,7 @@ from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
 from implam_post.io.shapes import curvatures_of
 from implam_post.laminate.decks import plies_of
-from implam_post.laminate.sections import Ply
+from implam_post.laminate.sections import Ply, natural_shear_correction
 from implam_post.laminate.zones import LayUp, Zones, with_lines, zones_of
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
@@ -196,7 +196,9 @@ def _unwritten(deck: Deck, zones: Zones) -> Iterator[str]:
         yield "the bond of doublers on the back is written as rigid where it has not delaminated"
     if any(doubler.may_separate and doubler.face == "front" for doubler in zones.doublers):
         yield "the bond of doublers on the struck face is written as rigid, also where it has delaminated"
-    if deck.values("laminate", "shear_correction") == ["energy"]:
+    # By default that of the lay-up.
+    if deck.choice("laminate", "shear_correction",
+                   dict.fromkeys((natural_shear_correction(zones.laminate), "5/6", "energy"))) == "energy":
         yield _BY_OTHERS
 
 

@@ -165,10 +165,15 @@ def _between_outermost(edges: np.ndarray, angle: float) -> float:
     return float(np.ptp(crossings))
 
 
+def has_grown(entry: Mapping[str, Any]) -> bool:
+    """Return whether the interface of an entry of a summary has delaminated, in the run or in the one before it."""
+    return bool(entry["first_growth"] or entry.get("first_growth_before_run"))
+
+
 def kinds_of_damage(summary: Mapping[str, Any]) -> list[str]:
     """Return the kinds of damage at the end of a run, each with its interfaces or plies."""
     kinds = []
-    grown = [entry["ply_above"] for entry in summary.get("interfaces", []) if entry["first_growth"]]
+    grown = [entry["ply_above"] for entry in summary.get("interfaces", []) if has_grown(entry)]
     if grown:
         kinds.append(f"delamination below {listed(grown)}")
     for name, key in (("matrix cracks", "matrix_crack_area"), ("matrix crushing", "matrix_crushing_area"),

@@ -57,9 +57,8 @@ def indentation_law_of(deck: Deck) -> IndentationLaw:
 def _sun_stiffness(deck: Deck) -> float:
     """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E3] with E and nu of the impactor (without E: rigid).
 
-    E3 is the modulus of the struck face through its thickness, E2 of ply 1 unless the deck gives it.
-
-    On a curved plate R is the radius of the relative curvature.
+    E3 is the modulus of the struck face through its thickness, unless the deck gives it E2 of ply 1, or E/(1 - nu**2)
+    if that is isotropic. On a curved plate R is the radius of the relative curvature.
     """
     radius = deck.number("impactor", "radius", 0.0)
     if radius <= 0:
@@ -67,7 +66,9 @@ def _sun_stiffness(deck: Deck) -> float:
     radius /= np.sqrt(np.prod(1 + radius * np.array(curvatures_of(deck))))
     if deck.choice("indentation", "face", ("ply", "laminate")) == "laminate" and not deck.values("indentation", "E3"):
         raise deck.error("indentation", "with face = 'laminate', k or E3 is required.")
-    flexibility = 1 / deck.number("indentation", "E3", plies_of(deck)[0].material.e2)
+    struck = plies_of(deck)[0].material
+    stiffness = struck.e2 / (1 - struck.nu12**2) if struck.isotropic else struck.e2
+    flexibility = 1 / deck.number("indentation", "E3", stiffness)
     if deck.values("indentation", "impactor_E"):
         ratio = deck.number("indentation", "impactor_nu", 0.3)
         flexibility += (1 - ratio**2) / deck.number("indentation", "impactor_E")

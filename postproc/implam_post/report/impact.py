@@ -12,6 +12,8 @@ from implam_post.io.units import SYSTEMS
 from implam_post.plot.style import PictureStyle
 
 Row = tuple[str, str, str]
+# Where a frame supports the panel.
+_BEARINGS = {"edge": "at the edge of its window", "face": "on its face"}
 
 
 def impact_rows(run: Run, style: PictureStyle) -> list[Row]:
@@ -90,8 +92,9 @@ def _supports(deck: Deck, style: PictureStyle) -> list[Row]:
 def _frame(support: Mapping[str, Any], style: PictureStyle) -> list[Row]:
     """Return the row of a frame."""
     lifts = bool(support.get("unilateral", [False])[0])
-    bearing = str(support.get("bearing", ["face" if lifts else "edge"])[0])
-    words = "at the edge of its window" if bearing == "edge" else "on its face"
+    bearing = str(support.get("bearing", ["face" if lifts else "edge"])[0]).lower()
+    sides = str(support.get("sides", [bearing])[0]).lower()
+    words = _BEARINGS[bearing] + (f", its sides along x {_BEARINGS[sides]}" if sides != bearing else "")
     remark = f"supports {words}, {'the panel may lift off' if lifts else 'holds the panel both ways'}"
     if len(window := support.get("window", [])) == 2:
         return [("frame, window", " by ".join(style.shown("length", side) for side in window), remark)]

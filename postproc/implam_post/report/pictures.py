@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter
 
+from implam_post.io.damage_resistance import has_grown
 from implam_post.io.deck import recorded_deck
 from implam_post.io.errors import ImplamError
 from implam_post.io.fields import Fields
@@ -56,7 +57,7 @@ def layup_figure(summary: Mapping[str, Any]) -> Figure:
         bottoms.append(-top)
     lines: dict[bool, Line2D] = {}
     for entry in summary.get("interfaces", []):
-        grown = bool(entry["first_growth"])
+        grown = has_grown(entry)
         lines[grown], = axes.plot([0, 1], 2 * [[0.0, *bottoms][entry["ply_above"]]], color="black",
                                   linewidth=2 if grown else 1, linestyle="-" if grown else ":",
                                   label="delamination has grown" if grown else "may delaminate, has not grown")

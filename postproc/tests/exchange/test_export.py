@@ -374,6 +374,14 @@ class NastranTest(ExportTest):
             written = (self.folder / "damaged_panel.bdf").read_text().split("SOL 101")[0]
             self.assertEqual(written.count("is not written"), notes)
 
+    def test_shear_correction(self) -> None:
+        """The one by energy is reported in capitals, too, and as the default of plies of unequal shear moduli."""
+        for change in (("thicknesses", "shear_correction='ENERGY' thicknesses"), ("E=70e3", "E=70")):
+            text = DECK.replace(*change)
+            self.keep_deck(text)
+            self.assertIn("the shear correction of &laminate is not written", self.run_command(
+                to_nastran, self.folder / "damaged.nml")[1])
+
     def test_without_a_pressure(self) -> None:
         """No load unless it is requested."""
         self.keep_deck(DECK.replace("&pressure value=0.25 /", ""))

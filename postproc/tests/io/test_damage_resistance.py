@@ -159,6 +159,11 @@ class ExtentTest(unittest.TestCase):
         self.assertEqual(kinds_of_damage({"plies": plies, "interfaces": interfaces}), [
             "delamination below ply 2", "matrix cracks in plies 3 to 6", "matrix crushing in ply 1"])
 
+    def test_kinds_before_the_run(self) -> None:
+        """A delamination of the impact before this one is damage at the end, too."""
+        interfaces = [{"ply_above": ply, "first_growth": None, "first_growth_before_run": ply == 2} for ply in (1, 2)]
+        self.assertEqual(kinds_of_damage({"plies": [], "interfaces": interfaces}), ["delamination below ply 2"])
+
 
 if __name__ == "__main__":
     unittest.main()

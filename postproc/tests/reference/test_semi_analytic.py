@@ -122,6 +122,11 @@ class ClosedFormTest(unittest.TestCase):
         self.assertRaisesRegex(DeckError, "k or E3", indentation_law_of,
                                deck(SUN_CHEN, ("k=8.112e8", "face='laminate'")))
 
+    def test_isotropic_face(self) -> None:
+        """Steel on steel: Hertz's stiffness, 4/3 sqrt(R) E/(2 (1 - nu**2)), which the deck gives."""
+        law = indentation_law_of(deck(KARAS, (" k=1.49595e10", " impactor_E=206.8e9 impactor_nu=0.28")))
+        self.assertAlmostEqual(law.stiffness / 1.49595e10, 1, delta=1e-6)
+
     def test_what_it_does_not_model(self) -> None:
         """Notes on large deflection and contact of a sphere."""
         self.assertEqual(notes(deck(KARAS)), [])

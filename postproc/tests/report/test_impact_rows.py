@@ -49,6 +49,13 @@ class ImpactRowsTest(unittest.TestCase):
         self.assertEqual(rows["impact energy per thickness"][0], "6.703 J/mm")
         self.assertEqual(rows["edges of the panel"][0], "x-min clamped, x-max free, y-min simple, y-max free")
 
+    def test_bearing_of_a_frame(self) -> None:
+        """Choices of a deck may be in capitals; sides may have another bearing than the ends."""
+        rows = rows_of(PANEL.replace("'edge'", "'EDGE'"))
+        self.assertIn("supports at the edge of its window, the panel", rows["frame, window"][1])
+        rows = rows_of(PANEL.replace("unilateral=.true.  bearing='edge'", "bearing='face'  sides='Edge'"))
+        self.assertIn("supports on its face, its sides along x at the edge of its window", rows["frame, window"][1])
+
     def test_without_an_impactor(self) -> None:
         """No section."""
         self.assertEqual(rows_of(PANEL[:PANEL.index("&impactor")]), {})
