@@ -2,7 +2,7 @@
 !>
 !> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both.
 !> With equal sections this element has the highest frequency; with scaled inertia the frequencies of longer ones are
-!> about the same. Before layers are inserted the step of a run is longer; contact stiffness reduces it.
+!> about the same. Before layers are inserted the step of a run is longer; the contact reduces it (`nose_steps`).
 module element_steps
   use cell_grids, only: cells_along
   use cell_lines, only: cell_line_t

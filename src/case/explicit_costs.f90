@@ -7,6 +7,7 @@ module explicit_costs
   use kinds, only: wp
   use mathematical_constants, only: pi
   use model_sizes, only: model_size_t
+  use nose_steps, only: steps_below_nose
   use delamination_parameters, only: law_cohesive
   use plate_options, only: kinematics_von_karman
   use setup_elastic_impacts, only: contact_end, start_elastic_impact
@@ -32,7 +33,7 @@ contains
     logical :: lengthened
 
     end = expected_end(deck)
-    steps = end/deck%stepping%time%step*shortened(deck)
+    steps = expected_steps(deck)
     step = end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
@@ -51,11 +52,18 @@ contains
     sentence = sentence//'.'
   end function explicit_sentence
 
-  !> Expected number of steps of a run.
+  !> Expected number of steps of a run. Below a nose more are taken during contact; the squares of frequencies by slopes
+  !> and by the contact are added.
   real(wp) function expected_steps(deck) result(steps)
     type(deck_t), intent(in) :: deck
+    real(wp) :: end, contact, slopes
 
-    steps = expected_end(deck)/deck%stepping%time%step*shortened(deck)
+    end = expected_end(deck)
+    slopes = shortened(deck)
+    contact = 0
+    if (deck%setup%is_impact()) contact = min(end, deck%expected%last_touch)
+    if (deck%expected%is_cut) contact = end
+    steps = ((end - contact)*slopes + contact*sqrt(slopes**2 + steps_below_nose(deck)**2 - 1))/deck%stepping%time%step
   end function expected_steps
 
   !> Expected end of a run: that of the deck, or later where the run continues until the impactor has left and the plate
