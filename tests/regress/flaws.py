@@ -7,7 +7,7 @@ Each with cracks_as_flaws, and with shear_cracks.
 whole    flaws cause damage, and quarter, half and point-symmetric half agree with the full plate: to 1e-6
 ranks    on 1 and 2 ranks: to 1e-6
 restart  from a checkpoint while cracks grow: bitwise
-doubler  the lower half of the last block as a doubler on the whole plate, with in-situ strengths: to 1e-6"""
+doubler  the lower half of the last block as a doubler on the full plate, with in-situ strengths: to 1e-6"""
 
 import sys
 from pathlib import Path
