@@ -7,6 +7,7 @@ module deck_scales
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
+  use delamination_deck, only: key_stiffness
   use interface_flexibility, only: added_share
   use interface_places, only: delamination_group
   use kinds, only: wp
@@ -78,7 +79,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     associate (share => added_share(deck%setup, deck%expected%scales%compliance))
-      if (share > max_interface_share) call remark(deck%settings, problems, delamination_group, 'stiffness', &
+      if (share > max_interface_share) call remark(deck%settings, problems, delamination_group, key_stiffness, &
         'of the intact interfaces adds '//short_text(100*share)//' % to the static deflection of the struck point; '// &
         short_text(share/max_interface_share)//' times the stiffness would add '// &
         short_text(100*max_interface_share)//' %.', 1)

@@ -46,7 +46,7 @@ contains
     do ply = 1, size(setup%laminate%material)
       if (.not. any(stack%number == ply)) call append(missing, to_text(ply))
     end do
-    if (size(missing) > 0) place = place//' without '//trim(merge('ply  ', 'plies', size(missing) == 1))//' '// &
-                                   joined(missing, ', ')
+    if (size(missing) == 1) place = place//' without ply '//missing(1)%text
+    if (size(missing) > 1) place = place//' without plies '//joined(missing, ', ')
   end function place_of_stack
 end module deck_stacks
