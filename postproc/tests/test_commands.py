@@ -178,6 +178,15 @@ class CommandTest(unittest.TestCase):
                 self.assertEqual(code, 1, text)
                 self.assertNotIn("Traceback", text)
 
+    def test_unknown_ending(self) -> None:
+        """An ending for which there is no kind of file is wrong usage; a movie is refused before files are read."""
+        code, text = self.run_quietly(movie.main, self.folder / "none.h5", "--save", self.folder / "x.foo")
+        self.assertEqual((code, text.count("\n")), (1, 1), text)
+        self.assertIn("does not end with .gif, .webp or .png", text)
+        code, text = self.run_quietly(plot.main, self.history, "--save", self.folder / "x.foo")
+        self.assertEqual(code, 1, text)
+        self.assertFalse((self.folder / "x.foo").exists())
+
     def expect(self, text: str) -> tuple[int, str]:
         """Run the comparison with these expectations."""
         table = self.folder / "expect.toml"

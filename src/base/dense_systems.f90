@@ -3,7 +3,7 @@ module dense_systems
   use kinds, only: wp
   implicit none
   private
-  public :: solve_dense, pseudo_inverse
+  public :: solve_dense, pseudo_inverse, symmetric_modes
 
   interface
     !> LAPACK: solves with a general matrix.
@@ -22,7 +22,7 @@ module dense_systems
     end subroutine dgesv
 
     !> LAPACK: eigenvalues and eigenvectors of a symmetric matrix.
-    subroutine dsyev(jobz, uplo, n, a, lda, values, work, lwork, info)
+    pure subroutine dsyev(jobz, uplo, n, a, lda, values, work, lwork, info)
       import :: wp
       !> V: with eigenvectors; triangle used
       character(len=1), intent(in) :: jobz, uplo
@@ -78,4 +78,18 @@ contains
     first = count(values <= n*epsilon(values)*values(n)) + 1
     inverse = matmul(vectors(:, first:)/spread(values(first:), 1, n), transpose(vectors(:, first:)))
   end function pseudo_inverse
+
+  !> Eigenvalues of a symmetric matrix in ascending order, and its eigenvectors.
+  pure subroutine symmetric_modes(matrix, values)
+    !> The matrix, (n, n), on return its eigenvectors, each of length 1
+    real(wp), intent(inout) :: matrix(:, :)
+    !> Eigenvalues, (n)
+    real(wp), intent(out) :: values(:)
+    real(wp) :: vectors(size(values), size(values)), work(34*size(values))
+    integer :: info
+
+    vectors = matrix
+    call dsyev('V', 'U', size(values), vectors, size(values), values, work, size(work), info)
+    matrix = vectors
+  end subroutine symmetric_modes
 end module dense_systems

@@ -9,6 +9,7 @@ module deck_crack_bands
   use deck_fibre_strengths, only: belongs_to_softening, check_fibre_strengths, fibre_factors
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, are_clear
+  use deck_stacks, only: place_of_stack, stacks_of
   use deck_strain_rates, only: check_strain_rates
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
@@ -16,13 +17,12 @@ module deck_crack_bands
   use material_deck, only: material_group, key_shear_strain, toughness_keys
   use material_parameters, only: first_alike
   use mesh_parameters, only: is_halved
-  use plies, only: ply_t
   use ply_blocks, only: block_of
   use ply_damage_deck, only: ply_damage_group, key_closure, key_in_situ, key_permanent
+  use ply_stacks, only: ply_stack_t
   use ply_damage_parameters, only: fibre_tension
   use short_numbers, only: short_text
   use scale_tables, only: length_text
-  use stacking, only: stacked_plies
   use stepping_parameters, only: is_explicit
   use text, only: line_t, append, joined, rounded_text, to_text
   implicit none
@@ -38,6 +38,7 @@ contains
   subroutine check_crack_bands(deck, problems)
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
+    type(ply_stack_t), allocatable :: stacks(:)
     logical :: softens
     integer :: i, mode
 
@@ -65,8 +66,9 @@ contains
       call report(deck%settings, problems, ply_damage_group, key_closure, 'implicit steps and load steps do not '// &
                 'model crack closure; use integrator = ''central_difference'' of &time, or leave it out.')
     if (problems%errors() > 0) return
-    if (deck%setup%ply_damage%in_situ .and. all(block_of(stacked_plies(deck%setup%laminate, deck%setup%materials), &
-                                                         1) == [1, size(deck%setup%laminate%angle)])) &
+    stacks = stacks_of(deck%setup)
+    if (deck%setup%ply_damage%in_situ .and. all([(block_of(stacks(i)%plies, 1) == [1, size(stacks(i)%plies)], &
+                                                  i=1, size(stacks))])) &
       call remark(deck%settings, problems, ply_damage_group, key_in_situ, 'has no effect: all plies are of one '// &
                   'material and angle, so that no ply has a neighbour that constrains its cracks.')
     if (deck%setup%ply_damage%in_situ .and. deck%setup%ply_damage%kinking) call check_kinking_in_place(deck, problems)
@@ -79,17 +81,21 @@ contains
   subroutine check_kinking_in_place(deck, problems)
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
-    type(ply_t), allocatable :: plies(:)
+    type(ply_stack_t), allocatable :: stacks(:)
     character(len=:), allocatable :: objection
-    integer :: ply
+    integer :: i, ply
 
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
-    do ply = 1, size(plies)
-      objection = larc_objection(material_in_place(plies, ply, deck%setup%materials, deck%setup%ply_damage))
-      if (objection == '') cycle
-      call report(deck%settings, problems, ply_damage_group, key_in_situ, 'raises S12 of ply '//to_text(ply)// &
-                  ' so far that '//objection//'.')
-      return
+    stacks = stacks_of(deck%setup)
+    do i = 1, size(stacks)
+      do ply = 1, size(stacks(i)%plies)
+        objection = larc_objection(material_in_place(stacks(i)%plies, ply, deck%setup%materials, &
+                                                     deck%setup%ply_damage))
+        if (objection == '') cycle
+        call report(deck%settings, problems, ply_damage_group, key_in_situ, 'raises S12 of ply '// &
+                    to_text(stacks(i)%number(ply))//place_of_stack(deck%setup, stacks(i))//' so far that '// &
+                    objection//'.')
+        return
+      end do
     end do
   end subroutine check_kinking_in_place
 
@@ -178,16 +184,19 @@ contains
     integer, intent(in) :: place
     !> The lengths in the order of the modes
     real(wp) :: longest(size(toughness_keys))
-    type(ply_t), allocatable :: plies(:)
-    integer :: ply, alike
+    type(ply_stack_t), allocatable :: stacks(:)
+    integer :: i, ply, alike
 
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    stacks = stacks_of(deck%setup)
     ! Plies have the first of equal materials.
     alike = first_alike(deck%setup%materials, place)
     longest = longest_element(create_crack_band(deck%setup%materials(place), deck%setup%ply_damage))
-    do ply = 1, size(plies)
-      if (plies(ply)%material == alike) longest = min(longest, longest_element(create_crack_band( &
-        material_in_place(plies, ply, deck%setup%materials, deck%setup%ply_damage), deck%setup%ply_damage)))
+    do i = 1, size(stacks)
+      do ply = 1, size(stacks(i)%plies)
+        if (stacks(i)%plies(ply)%material == alike) longest = min(longest, longest_element(create_crack_band( &
+          material_in_place(stacks(i)%plies, ply, deck%setup%materials, deck%setup%ply_damage), &
+          deck%setup%ply_damage)))
+      end do
     end do
     ! The energy at the onset grows with the square of the strength.
     longest(fibre_tension) = longest(fibre_tension)/maxval(fibre_factors(deck, alike))**2

@@ -8,11 +8,11 @@ module deck_fibre_strengths
   use deck_remarks, only: are_clear, remark, report
   use kinds, only: wp
   use mesh_parameters, only: parts_of
-  use plies, only: ply_t
-  use ply_blocks, only: block_thickness
+  use deck_stacks, only: stacks_of
+  use ply_blocks, only: blocks_of
+  use ply_stacks, only: ply_stack_t
   use ply_damage_deck, only: key_seed, key_square, key_volume, key_weibull, ply_damage_group
   use short_numbers, only: short_text
-  use stacking, only: stacked_plies
   use stressed_volumes, only: factor_of
   use text, only: to_text
   implicit none
@@ -85,15 +85,18 @@ contains
     integer, intent(in) :: place
     !> Smallest and largest; 0: no ply is of this material
     real(wp) :: volumes(2)
-    type(ply_t), allocatable :: plies(:)
+    type(ply_stack_t), allocatable :: stacks(:)
     type(cell_line_t) :: columns, rows
     real(wp), allocatable :: thicknesses(:)
-    integer :: ply
+    integer :: i
 
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
-    thicknesses = [(block_thickness(plies, ply), ply=1, size(plies))]
-    if (deck%setup%ply_damage%scatters()) thicknesses = plies%z_bottom - plies%z_top
-    thicknesses = pack(thicknesses, plies%material == place)
+    stacks = stacks_of(deck%setup)
+    if (deck%setup%ply_damage%scatters()) then
+      thicknesses = [(pack(stacks(i)%plies%z_bottom - stacks(i)%plies%z_top, stacks(i)%plies%material == place), &
+                      i=1, size(stacks))]
+    else
+      thicknesses = [(blocks_of(stacks(i)%plies, place), i=1, size(stacks))]
+    end if
     volumes = 0
     if (size(thicknesses) == 0) return
     columns = cells_along(deck%setup%plate, deck%setup%mesh, 1)

@@ -7,6 +7,9 @@ module deck_scales
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
+  use delamination_deck, only: key_stiffness
+  use interface_flexibility, only: added_share
+  use interface_places, only: delamination_group
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_core, key_elements, key_patch
   use setup_elastic_impacts, only: expected_scales_of
@@ -24,6 +27,9 @@ module deck_scales
   !> The same for the size of the patch, with twice the limit for the peak, as the effect of the patch is an estimate
   !> itself.
   real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
+  !> Share of the interfaces in the deflection above which a warning is given. The largest force changes by half as
+  !> much, as that of a heavy impactor is proportional to the root of the stiffness: by the limit of the errors.
+  real(wp), parameter :: max_interface_share = 2*error_limits(1)
   !> Ratio of estimated to requested error above which it is reported: estimates are 1.2 to 2 times the true errors.
   real(wp), parameter :: max_error_ratio = 1.5_wp
   !> Steps of elastic impacts per rise time of first contact for runs with many more, as by central differences: their
@@ -57,6 +63,7 @@ contains
       call check_accuracy(deck, problems)
     end if
     deck%expected%scales = scales
+    call check_interface_share(deck, problems)
     if (.not. (deck%has_time .and. is_explicit(deck%stepping))) return
     associate (duration => deck%stepping%central%settle, least => min_periods*scales%first_period)
       if (duration > 0 .and. duration < least) call remark(deck%settings, problems, time_group, key_settle, &
@@ -64,6 +71,20 @@ contains
         short_text(min_periods)//' periods of the first bending mode.')
     end associate
   end subroutine check_scales
+
+  !> Warns of many interfaces whose initial stiffness makes the plate softer. Their flexibility is inversely
+  !> proportional to it.
+  subroutine check_interface_share(deck, problems)
+    type(deck_t), intent(in) :: deck
+    type(problems_t), intent(inout) :: problems
+
+    associate (share => added_share(deck%setup, deck%expected%scales%compliance))
+      if (share > max_interface_share) call remark(deck%settings, problems, delamination_group, key_stiffness, &
+        'of the intact interfaces adds '//short_text(100*share)//' % to the static deflection of the struck point; '// &
+        short_text(share/max_interface_share)//' times the stiffness would add '// &
+        short_text(100*max_interface_share)//' %.', 1)
+    end associate
+  end subroutine check_interface_share
 
   !> Warns of a step, a mesh and a patch that do not resolve the impact.
   subroutine check_resolution(deck, problems)

@@ -2,6 +2,7 @@
 !> are in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
 module scale_tables
   use deck_contents, only: deck_t
+  use interface_flexibility, only: added_share
   use kinds, only: wp
   use mean_stiffnesses, only: bending_error_of
   use plies, only: is_bimodular, ply_t
@@ -65,6 +66,8 @@ contains
       call put('period of the first bending mode', scales%first_period, time)
       call put('delamination threshold force (closed form)', scales%threshold, force)
       call put('force at interlaminar shear failure beside the contact', scales%onset, force)
+      call put('deflection added by the stiffness of the interfaces', &
+               100*added_share(deck%setup, scales%compliance), percent)
       if (.not. o%of_impact) return
       call put('impact energy', scales%energy, energy)
       call put('stiffness k of the contact law', deck%setup%impactor%indentation%k, contact)

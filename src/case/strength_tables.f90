@@ -3,17 +3,17 @@
 module strength_tables
   use deck_contents, only: deck_t
   use deck_fibre_strengths, only: block_volumes, fibre_factors, scatter_of
+  use deck_stacks, only: place_of_stack, stacks_of
   use deck_strain_rates, only: expected_rate
   use fibre_toughnesses, only: measured_toughness, thick_block
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use loading_rates, only: strengthened_at
   use material_parameters, only: first_alike, material_t
-  use plies, only: ply_t
-  use ply_blocks, only: block_of, block_thickness
+  use ply_blocks, only: blocks_of
+  use ply_stacks, only: ply_stack_t
   use roundings, only: rounding
   use scale_tables, only: bare, length, percent, pressure, rate, read_as, table_line, toughness, unit_of, volume
-  use stacking, only: stacked_plies
   use text, only: line_t, append, to_text
   use unit_systems, only: base_units, system_named
   implicit none
@@ -30,51 +30,74 @@ contains
     lines = [in_situ_lines(deck), volume_lines(deck), rate_lines(deck), toughness_lines(deck)]
   end function strength_lines
 
-  !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a
-  !> line.
+  !> In-situ strengths of all plies, from the struck face; consecutive plies with equal strengths share a line. Of
+  !> laminates at doublers and ply drops plies are listed whose strengths are others there.
   function in_situ_lines(deck) result(lines)
     type(deck_t), intent(in) :: deck
     !> The lines; none unless the deck requests these strengths
     type(line_t), allocatable :: lines(:)
-    type(ply_t), allocatable :: plies(:)
-    type(material_t) :: material
-    character(len=:), allocatable :: values, last
-    integer :: range(2), first
+    type(ply_stack_t), allocatable :: stacks(:)
+    type(line_t), allocatable :: first(:), values(:)
+    integer :: i, ply
 
     allocate (lines(0))
     if (.not. deck%setup%ply_damage%in_situ) return
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
-    range = 0
-    first = 1
-    last = ''
-    do while (range(2) < size(plies))
-      range = block_of(plies, range(2) + 1)
-      material = material_in_place(plies, range(1), deck%setup%materials, deck%setup%ply_damage)
-      values = read_as(deck, material%yt, pressure)//', '//read_as(deck, material%s12, pressure)
-      if (values /= last .and. last /= '') then
-        call append(lines, strength_line(first, range(1) - 1, last))
-        first = range(1)
+    stacks = stacks_of(deck%setup)
+    first = strengths_of(deck, stacks(1))
+    do i = 1, size(stacks)
+      values = strengths_of(deck, stacks(i))
+      if (i > 1) then
+        do ply = 1, size(values)
+          associate (same => findloc(stacks(1)%number, stacks(i)%number(ply), 1))
+            if (same == 0) cycle
+            if (values(ply)%text == first(same)%text) values(ply)%text = ''
+          end associate
+        end do
       end if
-      last = values
+      call append_ranges(deck, stacks(i), values, lines)
     end do
-    call append(lines, strength_line(first, size(plies), last))
-
-  contains
-
-    !> The line of a range of plies.
-    function strength_line(from, to, strengths) result(line)
-      !> First and last ply
-      integer, intent(in) :: from, to
-      !> Their strengths
-      character(len=*), intent(in) :: strengths
-      !> The line
-      character(len=:), allocatable :: line
-
-      line = 'in-situ YT and S12, ply '//to_text(from)
-      if (to > from) line = 'in-situ YT and S12, plies '//to_text(from)//' to '//to_text(to)
-      line = table_line(line, strengths, unit_of(deck, pressure))
-    end function strength_line
   end function in_situ_lines
+
+  !> In-situ strengths of each ply of a laminate in words.
+  function strengths_of(deck, stack) result(values)
+    type(deck_t), intent(in) :: deck
+    type(ply_stack_t), intent(in) :: stack
+    type(line_t) :: values(size(stack%plies))
+    type(material_t) :: material
+    integer :: ply
+
+    do ply = 1, size(values)
+      material = material_in_place(stack%plies, ply, deck%setup%materials, deck%setup%ply_damage)
+      values(ply)%text = read_as(deck, material%yt, pressure)//', '//read_as(deck, material%s12, pressure)
+    end do
+  end function strengths_of
+
+  !> Adds a line for each range of plies of equal strengths.
+  subroutine append_ranges(deck, stack, values, lines)
+    type(deck_t), intent(in) :: deck
+    type(ply_stack_t), intent(in) :: stack
+    !> Strengths of its plies; empty: not listed
+    type(line_t), intent(in) :: values(:)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=:), allocatable :: name
+    integer :: from, to
+
+    to = 0
+    do while (to < size(values))
+      from = to + 1
+      to = from
+      do while (to < size(values))
+        if (values(to + 1)%text /= values(from)%text .or. stack%number(to + 1) /= stack%number(to) + 1) exit
+        to = to + 1
+      end do
+      if (values(from)%text == '') cycle
+      name = 'in-situ YT and S12, ply '//to_text(stack%number(from))
+      if (to > from) name = 'in-situ YT and S12, plies '//to_text(stack%number(from))//' to '// &
+                            to_text(stack%number(to))
+      call append(lines, table_line(name//place_of_stack(deck%setup, stack), values(from)%text, &
+                                    unit_of(deck, pressure)))
+    end do
+  end subroutine append_ranges
 
   !> Tensile strength of the fibres of each material where the smallest and where the largest volume is stressed; means
   !> and their scatter if strengths are drawn by position.
@@ -133,21 +156,20 @@ contains
   function toughness_lines(deck) result(lines)
     type(deck_t), intent(in) :: deck
     type(line_t), allocatable :: lines(:)
-    type(ply_t), allocatable :: plies(:)
+    type(ply_stack_t), allocatable :: stacks(:)
     real(wp), allocatable :: blocks(:)
     logical, allocatable :: is_thick(:)
     real(wp) :: metre
-    integer :: place, ply
+    integer :: place, i
 
     allocate (lines(0))
     if (system_named(deck%case%units) == 0 .or. .not. deck%setup%ply_damage%is_present) return
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    stacks = stacks_of(deck%setup)
     metre = product(base_units(system_named(deck%case%units))**length%exponents)
     do place = 1, size(deck%setup%materials)
       if (first_alike(deck%setup%materials, place) /= place) cycle
       if (.not. deck%setup%materials(place)%toughness(1) > 0) cycle
-      blocks = [(block_thickness(plies, ply), ply=1, size(plies))]
-      blocks = pack(blocks, plies%material == place)
+      blocks = [(blocks_of(stacks(i)%plies, place), i=1, size(stacks))]
       is_thick = blocks*metre >= thick_block*(1 - rounding)
       call append_line(pack(blocks, .not. is_thick), .false.)
       call append_line(pack(blocks, is_thick), .true.)

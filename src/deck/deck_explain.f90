@@ -15,7 +15,7 @@ contains
   !> Explains all groups, one group, one key of a group, or a key of any group.
   subroutine explain(vocabulary, topic, lines, error)
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Empty, `plate`, `plate%length`, `plate.length`, `plate length` or `length`, with or without &
+    !> Empty, `plate`, `plate%`, `plate%length`, `plate.length`, `plate length` or `length`, with or without &
     character(len=*), intent(in) :: topic
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if there is no such group or key
@@ -28,6 +28,11 @@ contains
     group = trim(adjustl(topic))
     if (index(group, '&') == 1) group = group(2:)
     mark = scan(group, '%. ')
+    ! A mark without a key behind it, as by a shell's completion, leaves the group.
+    if (mark > 0 .and. mark == len(group)) then
+      group = group(:mark - 1)
+      mark = 0
+    end if
     owners = vocabulary%groups_with(group)
     if (len(group) == 0) then
       call explain_groups(vocabulary, lines)

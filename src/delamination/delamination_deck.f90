@@ -27,7 +27,7 @@ module delamination_deck
     key_toughness = 'G_c', key_toughness_opening = 'G_Ic', key_toughness_shear = 'G_IIc', key_smoothing = 'smoothing', &
     key_strip = 'starter_strip', key_starter_at = 'starter_at', &
     key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks', key_strength_shear = 'strength_shear', &
-    key_growth_control = 'growth_control'
+    key_growth_control = 'growth_control', key_stiffness = 'stiffness'
   character(len=*), parameter :: group = delamination_group
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | Interfaces that may delaminate; one group for all that have equal properties.'
@@ -222,7 +222,7 @@ contains
     delamination%law = code_of(settings%text_of(group, key_law, place), 'front cohesive', [law_front, law_cohesive])
     if (delamination%bonds_doublers()) delamination%law = law_cohesive  ! a front is refused
     if (delamination%law /= law_cohesive) return
-    delamination%stiffness = settings%real_of(group, 'stiffness', place)
+    delamination%stiffness = settings%real_of(group, key_stiffness, place)
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
     call fill_strength(settings, place, key_strength_shear, weaker(2), delamination%strength_shear)
   end subroutine fill_law
@@ -362,7 +362,7 @@ contains
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: objection
 
-    if (.not. settings%is_given(group, 'stiffness', place) .or. problems%concern(group, 'stiffness', place)) return
+    if (.not. settings%is_given(group, key_stiffness, place) .or. problems%concern(group, key_stiffness, place)) return
     if (.not. are_clear(settings, problems, group, &
                         'G_c G_Ic G_IIc eta strength_opening strength_shear stiffness', place)) return
     associate (d => delamination)
@@ -370,6 +370,6 @@ contains
       objection = cohesive_objection(create_cohesive_law(toughnesses(d), d%mixing_exponent, [d%strength_opening, &
                                                          d%strength_shear], d%stiffness, 0.0_wp, 0.0_wp))
     end associate
-    if (objection /= '') call report(settings, problems, group, 'stiffness', objection//'.', place)
+    if (objection /= '') call report(settings, problems, group, key_stiffness, objection//'.', place)
   end subroutine check_law
 end module delamination_deck

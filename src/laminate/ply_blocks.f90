@@ -4,7 +4,7 @@ module ply_blocks
   use plies, only: ply_t
   implicit none
   private
-  public :: are_alike, block_of, block_thickness
+  public :: are_alike, block_of, block_thickness, blocks_of
 
 contains
 
@@ -37,6 +37,17 @@ contains
     range = block_of(plies, ply)
     thickness = plies(range(2))%z_bottom - plies(range(1))%z_top
   end function block_thickness
+
+  !> Thickness of the block of each ply of a material.
+  pure function blocks_of(plies, material) result(thicknesses)
+    type(ply_t), intent(in) :: plies(:)
+    !> Its index
+    integer, intent(in) :: material
+    real(wp), allocatable :: thicknesses(:)
+    integer :: ply
+
+    thicknesses = pack([(block_thickness(plies, ply), ply=1, size(plies))], plies%material == material)
+  end function blocks_of
 
   !> True: one material at one angle, modulo 180 degrees.
   pure logical function are_alike(a, b)

@@ -1,7 +1,7 @@
 !> Laws of the interfaces between the layers of a mesh, and the areas of their points.
 module interface_laws
   use cohesive_laws, only: cohesive_law_t, create_cohesive_law
-  use delamination_parameters, only: law_cohesive, toughnesses
+  use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use plies, only: ply_t
@@ -9,7 +9,7 @@ module interface_laws
   use surface_contact, only: contact_law_t, create_contact_law
   implicit none
   private
-  public :: interface_laws_t, new_interface_laws
+  public :: interface_laws_t, new_interface_laws, law_between_plies
 
   !> Properties of the interfaces at this rank's points.
   type :: interface_laws_t
@@ -52,12 +52,35 @@ contains
                                                      above%elasticity%e2/thickness, thickness, &
                                                      moving=setup%has_inertia())
         if (interface%law == law_cohesive) &
-          self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
-                                                         [interface%strength_opening, interface%strength_shear], &
-                                                         interface%stiffness, above%elasticity%e2, thickness)
+          self%cohesive_laws(zone) = cohesive_law_of(interface, above%elasticity%e2, thickness)
       end associate
     end do
   end function new_interface_laws
+
+  !> Cohesive law of an interface between plies of the skin.
+  pure type(cohesive_law_t) function law_between_plies(interface, plies) result(law)
+    !> The interface
+    type(delamination_t), intent(in) :: interface
+    !> Plies of the skin
+    type(ply_t), intent(in) :: plies(:)
+
+    associate (above => plies(interface%below_ply))
+      law = cohesive_law_of(interface, above%elasticity%e2, min(above%z_bottom - plies(1)%z_top, &
+                                                                plies(size(plies))%z_bottom - above%z_bottom))
+    end associate
+  end function law_between_plies
+
+  !> Cohesive law of an interface.
+  pure type(cohesive_law_t) function cohesive_law_of(interface, modulus, thickness) result(law)
+    !> The interface
+    type(delamination_t), intent(in) :: interface
+    !> E2 of the ply above it, thickness of the laminate on its thinner side
+    real(wp), intent(in) :: modulus, thickness
+
+    law = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
+                              [interface%strength_opening, interface%strength_shear], &
+                              interface%stiffness, modulus, thickness)
+  end function cohesive_law_of
 
   !> True if a point lies next to the border of its zone, except where this is the border of the model or the free edge
   !> of a doubler.

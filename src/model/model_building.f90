@@ -1,6 +1,7 @@
 !> Builds the model of a setup: its plate, loads and supports on this rank.
 module model_building
   use communicators, only: communicator_t
+  use composite_plates, only: composite_plate_t
   use delamination_parameters, only: contact_augmented_lagrangian
   use errors, only: error_t
   use kinds, only: wp
@@ -11,6 +12,7 @@ module model_building
   use plate_building, only: create_plate
   use rig_models, only: new_rig_model
   use setups, only: setup_t
+  use stacking, only: section_of, section_t
   use surface_contact, only: create_contact_law
   implicit none
   private
@@ -50,7 +52,7 @@ contains
       if (.not. allocated(plate%setup%lines)) return
       self%loads%lines = [(place_line(plate%setup%lines(i), plate%mesh, plate%distribution, plate%map, &
                                       plate%constraints%fixed(:, plate%distribution%points), &
-                                      plate%layup%laminates(1)%plies, plate%layup%section, &
+                                      plate%layup%laminates(1)%plies, sections_of(plate), &
                                       plate%setup%plate%symmetry), i=1, size(plate%setup%lines))]
       do i = 1, size(self%loads%lines)
         associate (line => self%loads%lines(i))
@@ -59,6 +61,16 @@ contains
       end do
     end associate
   end subroutine build_lines
+
+  !> Section of each laminate of a plate.
+  pure function sections_of(plate) result(sections)
+    type(composite_plate_t), intent(in) :: plate
+    type(section_t) :: sections(size(plate%layup%laminates))
+    integer :: i
+
+    sections = [(section_of(plate%layup%laminates(i)%plies, plate%setup%laminate%shear_correction), &
+                 i=1, size(sections))]
+  end function sections_of
 
   !> Supports of this rank's points by rigs, and the contact with unilateral frames: that of the laminate's face with a
   !> rigid one.

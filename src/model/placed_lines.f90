@@ -17,7 +17,7 @@ module placed_lines
   private
   public :: placed_line_t, place_line
 
-  !> Total stiffness of a line's springs over that of the section. The plate is mostly more compliant than its section,
+  !> Total stiffness of a line's springs over that of the stiffest section. The plate is mostly more compliant,
   !> so that the relative error of the displacement is 1e-5 at most; round-off of the force decreases with the
   !> stiffness.
   real(wp), parameter, public :: relative_stiffness = 1.0e5_wp
@@ -56,7 +56,7 @@ module placed_lines
 contains
 
   !> Finds nodes and weights of a line on the mesh.
-  pure function place_line(load, mesh, distribution, map, fixed, plies, section, symmetry) result(self)
+  pure function place_line(load, mesh, distribution, map, fixed, plies, sections, symmetry) result(self)
     type(line_load_t), intent(in) :: load
     type(layered_mesh_t), intent(in) :: mesh
     type(distribution_t), intent(in) :: distribution
@@ -64,7 +64,8 @@ contains
     !> True for unknowns constrained by supports, (5, points of this rank)
     logical, intent(in) :: fixed(:, :)
     type(ply_t), intent(in) :: plies(:)
-    type(section_t), intent(in) :: section
+    !> Of the different laminates of the plate
+    type(section_t), intent(in) :: sections(:)
     integer, intent(in) :: symmetry
     !> The line on this rank
     type(placed_line_t) :: self
@@ -74,7 +75,8 @@ contains
     along = merge(1, 2, load%direction == along_x)
     across = 3 - along
     self%load = load
-    self%stiffness = relative_stiffness*section_scale(section, load%component)
+    ! The stiffest of the laminates may lie on the line.
+    self%stiffness = relative_stiffness*maxval([(section_scale(sections(i), load%component), i=1, size(sections))])
     crossing = mesh%along(across)%nearest_node(load%at)
     mirrored = is_mirrored(symmetry)
     if (mirrored(along)) self%share = self%share/2

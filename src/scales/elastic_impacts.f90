@@ -37,8 +37,9 @@ module elastic_impacts
 
   !> Fraction of the largest force above which the force counts as contact: 1 %, its permitted error.
   real(wp), parameter :: contact_part = 0.01_wp
-  !> A contact that ended is taken to be the last if none follows for as long as it took up to then. At its
-  !> velocity the impactor is then farther away than the plate has moved.
+  !> A contact that ended is taken to be the last if none follows for as long as it took up to then: at its velocity
+  !> the impactor is then farther away than the plate has moved. An impactor that still moves on meets the plate again,
+  !> unless that is free to move ahead of it.
   real(wp), parameter :: waiting = 2
   !> Fraction of the largest force above which the peak of a contact is compared, too: with the errors permitted, at
   !> most 5 %, a smaller peak cannot become the largest.
@@ -91,7 +92,8 @@ contains
       if (now > 0) elastic%duration = elastic%duration + step
       if (now > contact_part*elastic%peak) active = i
       if (now > 0) elastic%last_touch = i*step
-      if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
+      if (to_the_end .or. active == 0 .or. i <= waiting*active) cycle
+      if (ball(2) <= impactor%gravity*(i - active)*step .or. any(plate%frequency <= 0)) exit
     end do
     elastic%complete = i <= max_steps
     elastic%force = force(:min(i, max_steps))

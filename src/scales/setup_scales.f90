@@ -20,7 +20,7 @@ module setup_scales
   implicit none
   private
   public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span, free_edges, bending_section, &
-            growth_thresholds
+            growth_thresholds, loaded_side
 
   !> Scales of a setup. It has many components because each is one line of the table that users read.
   type :: setup_scales_t

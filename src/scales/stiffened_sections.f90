@@ -7,7 +7,7 @@
 !> section are zero (smeared stiffeners, M. Baruch and J. Singer, J. Mech. Eng. Sci. 5, 1963). Between stringers the
 !> first mode is that of the plate without them, simply supported by them. doc/manual/stringer.md has its errors.
 module stiffened_sections
-  use beam_modes, only: clamped_beam_number
+  use beam_modes, only: beam_of, beam_t
   use kinds, only: wp
   use mathematical_constants, only: pi
   use mean_stiffnesses, only: in_bending
@@ -235,13 +235,14 @@ contains
     !> 1 for x, 2 for y; by_deflection or by_curvature
     integer, intent(in) :: direction, of
     real(wp), intent(in) :: at
-    real(wp) :: q, place
+    type(beam_t) :: beam
+    real(wp) :: place
 
     associate (ends => part%ends(:, direction), edges => part%edges(2*direction - 1:2*direction))
       place = (at - sum(ends)/2)/(ends(2) - ends(1))
       if (all(edges == edge_clamped)) then
-        q = clamped_beam_number(1)
-        square = (cos(q*place)/cos(q/2) + merge(-1, 1, of == by_deflection)*cosh(q*place)/cosh(q/2))**2
+        beam = beam_of(edges)
+        square = beam%derivative(1, place, merge(0, 2, of == by_deflection))**2
       else if (all(edges == edge_free)) then
         square = 1
       else

@@ -30,9 +30,10 @@ contains
     type(interface_state_t), intent(inout) :: interfaces
     logical, allocatable :: failed(:, :)
     logical :: beside(size(plate%mesh%zones)), cracked(product(plate%mesh%cells))
-    integer :: zone, ply
+    integer :: laminate_of(product(plate%mesh%cells)), zone, ply, laminate
 
     if (.not. (plate%map%layered .and. plate%setup%ply_damage%is_present)) return
+    laminate_of = laminates_of_cells(plate)
     do ply = 1, plate%mesh%plies
       associate (below => plate%mesh%zones%below_ply, delaminations => plate%setup%delaminations)
         beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &
@@ -40,25 +41,51 @@ contains
         if (.not. any(beside)) cycle
         failed = plies%failed_in_elements(plate, ply)
         cracked = cells_of(plate, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
-        do zone = 1, size(beside)
-          if (beside(zone)) call weaken_beside(interfaces%cohesive, plate, zone, cracked, &
-                                               block_thickness(plate%layup%laminates(1)%plies, ply), &
-                                               delaminations(zone)%flaw_strength)
+        do laminate = 1, size(plate%layup%laminates)
+          associate (stack => plate%layup%laminates(laminate))
+            if (.not. stack%has(ply)) cycle
+            do zone = 1, size(beside)
+              if (beside(zone)) call weaken_beside(interfaces%cohesive, plate, zone, &
+                                                   cracked .and. laminate_of == laminate, &
+                                                   block_thickness(stack%plies, stack%place(ply)), &
+                                                   delaminations(zone)%flaw_strength)
+            end do
+          end associate
         end do
       end associate
     end do
     if (.not. any(plate%setup%delaminations%shear_cracks)) return
-    call weaken_by_shear(plate, plies, element_strains(plate, plies, displacement), interfaces)
+    associate (strains => element_strains(plate, plies, displacement))
+      do laminate = 1, size(plate%layup%laminates)
+        call weaken_by_shear(plate, plies, strains, laminate, laminate_of == laminate, interfaces)
+      end do
+    end associate
   end subroutine update_flaws
+
+  !> Laminate of each cell of the mesh.
+  pure function laminates_of_cells(plate) result(laminate_of)
+    type(composite_plate_t), intent(in) :: plate
+    integer :: laminate_of(product(plate%mesh%cells)), element
+
+    associate (mesh => plate%mesh)
+      do element = 1, mesh%elements()
+        laminate_of(mesh%element_cell(element)) = mesh%layers(mesh%element_layer(element))%laminate
+      end do
+    end associate
+  end function laminates_of_cells
 
   !> Reduces the strengths of the interfaces of plies beside their cracks by transverse shear: a cracked ply transmits
   !> no more than its own shear strength. Collective.
-  subroutine weaken_by_shear(plate, plies, strains, interfaces)
+  subroutine weaken_by_shear(plate, plies, strains, laminate, has_laminate, interfaces)
     type(composite_plate_t), intent(in) :: plate
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
+    !> Number of the laminate whose cracks are considered
+    integer, intent(in) :: laminate
+    !> True for the cells of the mesh with this laminate
+    logical, intent(in) :: has_laminate(:)
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
     type(matrix_strengths_t) :: strengths(plate%mesh%plies)
@@ -68,18 +95,19 @@ contains
     integer :: ply, zone
 
     cracked = .false.
+    parts = 1
     do ply = 1, size(reach)
-      associate (setup => plate%setup, below => plate%mesh%zones%below_ply, all => plate%layup%laminates(1)%plies)
-        reach(ply) = block_thickness(all, ply)
-        strengths(ply) = crack_strengths(all, ply, setup%materials, setup%ply_damage)
-        parts(:, ply) = 1
+      associate (setup => plate%setup, below => plate%mesh%zones%below_ply, stack => plate%layup%laminates(laminate))
+        if (.not. stack%has(ply)) cycle
+        reach(ply) = block_thickness(stack%plies, stack%place(ply))
+        strengths(ply) = crack_strengths(stack%plies, stack%place(ply), setup%materials, setup%ply_damage)
         where ((below == ply .or. below == ply - 1) .and. setup%delaminations%law == law_cohesive .and. &
                setup%delaminations%shear_cracks) &
           parts(:, ply) = min(1.0_wp, shear_across_strength(strengths(ply))/setup%delaminations%strength_shear)
       end associate
       do zone = 1, size(parts, 1)
         if (parts(zone, ply) < 1) &
-          cracked(:, ply) = cracked(:, ply) .or. reachable_cells(plate%mesh, zone, reach(ply))
+          cracked(:, ply) = cracked(:, ply) .or. has_laminate .and. reachable_cells(plate%mesh, zone, reach(ply))
       end do
     end do
     call find_sheared_cells(plate, plies, strains, strengths, cracked)

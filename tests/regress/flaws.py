@@ -1,12 +1,13 @@
 """Ply cracks as flaws of the adjacent interface.
-Usage: flaws.py whole|ranks|restart IMPLAM FOLDER [LAUNCHER...]
+Usage: flaws.py whole|ranks|restart|doubler IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
 Each with cracks_as_flaws, and with shear_cracks.
 
 whole    flaws cause damage, and quarter, half and point-symmetric half agree with the full plate: to 1e-6
 ranks    on 1 and 2 ranks: to 1e-6
-restart  from a checkpoint while cracks grow: bitwise"""
+restart  from a checkpoint while cracks grow: bitwise
+doubler  the lower half of the last block as a doubler on the full plate, with in-situ strengths: to 1e-6"""
 
 import sys
 from pathlib import Path
@@ -29,6 +30,11 @@ CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "mater
 WAYS = {"cracks_as_flaws": ([*CRACKS, "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
                              "time%end=200e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 160e-6),
         "shear_cracks": ([*CRACKS, "time%end=280e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 240e-6)}
+# The same plate without and with a doubler.
+WHOLE = ["laminate%angles=0, 90, 0, 0", "laminate%thicknesses=0.6666667e-3, 0.6666667e-3, 0.3333333e-3, 0.3333333e-3"]
+PADDED = ["laminate%thicknesses=0.6666667e-3, 0.6666667e-3, 0.3333333e-3",
+          "doubler%name='pad' face='back' materials='T300/976' stacking='[0]' ply_thickness=0.3333333e-3 at=0, 0 "
+          "size=0.04, 0.04"]
 PARTS = {"quarter": "6, 6", "half_x": "6, 12", "point": "6, 12", "none": "12, 12"}
 
 
@@ -73,10 +79,25 @@ def check_restart(implam, folder, key, _):
     require(area[-1] > area[-16] > 0, "The delamination does not grow after the checkpoint.")
 
 
+def check_doubler(implam, folder, key, _):
+    """A block that is partly a doubler has the strength and the reach of the whole block."""
+    settings = [*(crack for crack in WAYS[key][0] if "%d=" not in crack), "delamination%shear_cracks=.true.",
+                "delamination%stiffness=1e14", "ply_damage%in_situ=.true.", "material%G_ft=81.5e3",
+                "material%G_fc=106.3e3", "material%G_mt=280", "material%G_mc=790"]
+    whole, padded = (read_history(run_deck(implam, write_deck(folder / name, DECK, [*settings, *plies])))
+                     for name, plies in (("whole", WHOLE), ("padded", PADDED)))
+    print(f"delaminated {1e6*whole['delaminated_area'][-1]:.3f} mm2, with a doubler "
+          f"{1e6*padded['delaminated_area'][-1]:.3f} mm2")
+    require(len(padded["time"]) == len(whole["time"]), "The steps differ.")
+    for name in ("force", "delaminated_area", "energy_delamination", "energy_ply_damage"):
+        worst = max(abs(a - b) for a, b in zip(padded[name], whole[name], strict=True))/max(whole[name])
+        require(worst <= 1e-6, f"{name} with the doubler differs by {worst:.2g}.")
+
+
 def trial(kind, implam, folder, *launcher):
     """Run one trial."""
-    checks = {"whole": check_whole, "ranks": check_ranks, "restart": check_restart}
-    for key in WAYS:
+    checks = {"whole": check_whole, "ranks": check_ranks, "restart": check_restart, "doubler": check_doubler}
+    for key in WAYS if kind != "doubler" else ("shear_cracks",):
         checks[kind](implam, Path(folder) / key, key, launcher)
 
 

@@ -7,7 +7,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from implam_post.io.errors import FileError, reason
+from implam_post.io.errors import FileError, ImplamError, reason
 from implam_post.io.files import replaced
 from implam_post.io.history import History, read_columns
 from implam_post.io.measured import check_units
@@ -47,7 +47,7 @@ def plot_curves(history: History, files: Sequence[Path], path: Path, style: Pict
             with replaced(path) as draft:
                 figure.savefig(draft, dpi=style.dots_per_inch)
         except ValueError as error:
-            raise FileError(f"{path} cannot be written ({reason(error)}).") from None
+            raise ImplamError(f"{path} cannot be written ({reason(error)}).") from None
     return path
 
 

@@ -29,6 +29,8 @@ _LOADS = (("force", "contact force", "force"), (STRESS, "far-field stress", "str
 _FEW = 6
 # Smallest and largest frame rate: files store durations in hundredths or thousandths of a second.
 _RATES = (0.01, 1000.0)
+# Endings of files that have several pictures.
+_ENDINGS = (".gif", ".webp", ".png")
 
 
 def frames(fields: Fields, history: History | None, style: PictureStyle) -> list[Image.Image]:
@@ -70,12 +72,14 @@ def _command(options: argparse.Namespace) -> int:
     style = style_of(options, [options.fields])
     if not _RATES[0] <= options.rate <= _RATES[1]:
         raise ImplamError(f"--rate must be from {_RATES[0]:g} to {_RATES[1]:g}.")
+    path = options.save or options.fields.with_suffix(".gif")
+    if path.suffix.lower() not in _ENDINGS:
+        raise ImplamError(f"--save: {path} does not end with {', '.join(_ENDINGS[:-1])} or {_ENDINGS[-1]}.")
     fields = read_fields(options.fields)
     if not fields.snapshots[-1].mesh.interfaces:
         raise FileError(f"{options.fields} has no interface that may delaminate.")
     with matplotlib.rc_context({"font.size": style.letters}):
         pictures = frames(fields, open_run(options.fields).columns, style)
-    path = options.save or options.fields.with_suffix(".gif")
     try:
         with replaced(path) as draft:
             pictures[0].save(draft, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)

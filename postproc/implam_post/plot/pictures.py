@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.transforms import ScaledTranslation
 
-from implam_post.io.errors import FileError, reason
+from implam_post.io.errors import FileError, ImplamError, reason
 from implam_post.io.fields import Fields
 from implam_post.io.files import replaced
 from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES, History
@@ -232,5 +232,5 @@ def _save(figure: Figure, path: Path, style: PictureStyle = _PLAIN) -> Path:
         with replaced(path) as draft:
             figure.savefig(draft, dpi=style.dots_per_inch)
     except ValueError as error:
-        raise FileError(f"{path} cannot be written ({reason(error)}).") from None
+        raise ImplamError(f"{path} cannot be written ({reason(error)}).") from None
     return path
