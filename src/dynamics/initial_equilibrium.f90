@@ -6,6 +6,7 @@
 module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
+  use krylov_corrections, only: solve_load_tangent
   use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
   use composite_plates, only: composite_plate_t
   use models, only: model_t
@@ -114,9 +115,8 @@ contains
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (allocated(error)) return
       call operator%renew(model, state, 1.0_wp, mass_factor(model), error)
-      if (.not. allocated(error)) call operator%correct(model%plate, residual, correction, error)
+      if (.not. allocated(error)) call solve_load_tangent(operator, model, state, residual, correction, error)
       if (allocated(error)) return
-      operator%solves = operator%solves + 1
       if (model%plate%setup%has_crack_bands()) call extrapolate(model%plate, residual, aitken, correction)
       call state%interfaces%contact%constrain_correction(model%plate, correction)
       state%motion%displacement = state%motion%displacement + correction

@@ -7,11 +7,11 @@
 !> iterate is a direction of descent (Newton's method with conjugate gradients, J. Nocedal, S. J. Wright, Numerical
 !> Optimization, 2006, algorithm 7.1).
 module krylov_corrections
-  use cohesive_interfaces, only: cohesive_interfaces_t
   use errors, only: error_t
   use kinds, only: wp
   use krylov_solvers, only: krylov_solver_t
   use models, only: model_t
+  use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   use tangent_products, only: tangent_product_t
   implicit none
@@ -97,13 +97,14 @@ contains
 
   !> Solution under forces, ghosts included, with the tangent of a load step, whose symmetric part has just been
   !> factored. A cohesive law whose toughness depends on the mixture of modes has an unsymmetric tangent where damage
-  !> grows. Collective.
-  subroutine solve_load_tangent(operator, model, cohesive, forces, solution, error)
+  !> grows. Plies with E1c have elements whose tangent is not the factored one: the factor has E1c for all strains of a
+  !> compressed ply, and alone converges for E1c above E1/2 only. Collective.
+  subroutine solve_load_tangent(operator, model, state, forces, solution, error)
     !> The operator, just factored
     type(tangent_operator_t), target, intent(inout) :: operator
     type(model_t), target, intent(in) :: model
-    !> The interfaces with their tangents
-    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> The state at which the tangent is taken
+    type(state_t), target, intent(in) :: state
     !> Forces at the owned points, (5, points)
     real(wp), intent(in) :: forces(:, :)
     !> Solution, (5, points)
@@ -116,9 +117,38 @@ contains
     tangent%model => model
     tangent%operator => operator
     tangent%displacement => operator%displacement
-    if (allocated(cohesive%tangents)) call tangent%set_skew_part(cohesive%tangents)
+    if (allocated(state%plies%mean_change)) then
+      call set_elements(tangent, operator, state)
+    else if (allocated(state%interfaces%cohesive%tangents)) then
+      call tangent%set_skew_part(state%interfaces%cohesive%tangents)
+    end if
     tangent%diagonal = operator%diagonal
     tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + abs(operator%added)
     call find_krylov_correction(tangent, forces, relative_tolerance, solution, error, has_negative_curvature, converged)
   end subroutine solve_load_tangent
+
+  !> Sets a tangent of plies with E1c: that of the elements, and all of the stiffness of jumps.
+  subroutine set_elements(tangent, operator, state)
+    type(tangent_product_t), intent(inout) :: tangent
+    !> The operator, just factored
+    type(tangent_operator_t), intent(in) :: operator
+    !> The state at which the tangent is taken
+    type(state_t), target, intent(in) :: state
+    logical, allocatable :: cohesive(:)
+
+    tangent%elements = .true.
+    tangent%stiffness => state%plies%stiffness
+    tangent%free => state%plies%free
+    tangent%mean_change => state%plies%mean_change
+    tangent%stiffness_factor = operator%stiffness_factor
+    tangent%mass_factor = operator%mass_factor
+    if (allocated(state%interfaces%cohesive%tangents)) then
+      call tangent%set_jump_stiffness(operator%added, operator%added, state%interfaces%cohesive%cohesive, &
+                                      state%interfaces%cohesive%tangents)
+    else
+      call tangent%set_jump_stiffness(operator%added, operator%added, cohesive, reshape([real(wp) ::], [3, 3, 0]))
+    end if
+    ! A path may lead through unstable states, which conjugate gradients would leave.
+    tangent%softens = .false.
+  end subroutine set_elements
 end module krylov_corrections

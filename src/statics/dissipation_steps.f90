@@ -118,7 +118,7 @@ contains
       else
         call model%loads%load_slopes(loads)
       end if
-      call solve_load_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
+      call solve_load_tangent(operator, model, new, loads, response, error)
       if (allocated(error)) return
       call new%interfaces%cohesive%add_dissipation_slopes(model%plate, old%interfaces%cohesive, &
                                                           new%motion%displacement, slopes)

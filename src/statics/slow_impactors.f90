@@ -52,7 +52,7 @@ contains
     push = 0
     response = 0
     call add_impactor_force(model%plate, new, 1.0_wp, push)
-    call solve_load_tangent(operator, model, new%interfaces%cohesive, push, response, error)
+    call solve_load_tangent(operator, model, new, push, response, error)
     if (allocated(error)) return
     compliance = new%impact%patch%mean(model%plate%communicator, response)
     mean = new%contact_deflection(model%plate) + new%impact%patch%mean(model%plate%communicator, correction)

@@ -115,7 +115,7 @@ contains
       if (.not. operator%ready .or. tangent_changes(model, new%iterations%equilibrium)) &
         call operator%renew(model, new, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) &
-        call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
+        call solve_load_tangent(operator, model, new, at%residual, at%correction, error)
       if (.not. allocated(error)) call self%complete_correction(at, error)
       if (.not. allocated(error)) call new%interfaces%contact%constrain_correction(model%plate, at%correction)
     end associate
