@@ -6,7 +6,7 @@ module stack_motions
   use kinds, only: wp
   use line_steps, only: line_steps_t
   use composite_plates, only: composite_plate_t
-  use nodal_inertia, only: nodal_inertia_t
+  use nodal_inertia, only: along_z, nodal_inertia_t
   use rig_steps, only: rig_steps_t
   use stack_batches, only: layer_lanes_t, load_layers, new_stack_batches, stack_batch_t, stack_batches_t, store_layers
   use stack_solutions, only: solve_damaged, solve_intact, solve_tractions
@@ -76,7 +76,8 @@ contains
 
     do i = 1, size(constrained)
       associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
-        constrained(i) = nodes%rigs%on_frame(first) .or. any(nodes%lines%line(:, first:last) >= 0)
+        constrained(i) = nodes%rigs%on_frame(first) .or. nodes%rigs%circles%holds(first) .or. &
+                         any(nodes%lines%line(:, first:last) >= 0)
       end associate
     end do
   end function are_constrained
@@ -125,7 +126,10 @@ contains
       do j = 0, batch%n
         call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
       end do
-      if (batch%constrained) call prescribe(batch, nodes%lines, layers)
+      if (batch%constrained) then
+        call prescribe(batch, nodes%lines, layers)
+        call hold_together(batch, nodes%rigs%circles%holds, layers)
+      end if
       call find_rates(batch, layers)
       do j = 1, batch%n
         layers(j)%trial = layers(j)%u(:, :3) + steps%now*layers(j)%rates(:, :3)
@@ -140,7 +144,10 @@ contains
       do j = 0, batch%n
         call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
       end do
-      if (batch%constrained) call record_reactions(batch, nodes, layers)
+      if (batch%constrained) then
+        call hold_together(batch, nodes%rigs%circles%holds, layers)
+        call record_reactions(batch, nodes, layers)
+      end if
       call find_rates(batch, layers)
       do j = 1, batch%n
         layers(j)%change = steps%now*layers(j)%rates(:, :3)
@@ -256,6 +263,40 @@ contains
       end do
     end do
   end subroutine prescribe
+
+  !> Gives all layers of nodes on a circular window the mean velocity along w, weighted with their inertia. The frame
+  !> acts on w of the node; if layers moved apart, it would do work on their openings.
+  pure subroutine hold_together(batch, holds, layers)
+    type(stack_batch_t), intent(in) :: batch
+    !> True at first points of such nodes, (points)
+    logical, intent(in) :: holds(:)
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp), dimension(lanes) :: momentum, inertia
+    logical, dimension(lanes) :: held, fixed
+    integer :: j
+
+    held = holds(batch%first)
+    if (batch%n == 0 .or. .not. any(held)) return
+    momentum = 0
+    inertia = 0
+    fixed = .false.
+    do j = 0, batch%n
+      associate (inverse => batch%layers(j)%inverse(:, along_z))
+        fixed = fixed .or. .not. inverse > 0
+        where (inverse > 0)
+          momentum = momentum + layers(j)%velocity(:, 3)/inverse
+          inertia = inertia + 1/inverse
+        end where
+      end associate
+    end do
+    where (fixed)
+      momentum = 0
+      inertia = 1
+    end where
+    do j = 0, batch%n
+      where (held) layers(j)%velocity(:, 3) = momentum/inertia
+    end do
+  end subroutine hold_together
 
   !> Stops lowest layers at frames that they would penetrate.
   pure subroutine stop_at_frames(batch, rigs, steps, layers)
