@@ -45,6 +45,8 @@ module rig_steps
     real(wp), allocatable, private :: stiffness(:, :)
     !> Forces of the last step
     real(wp), allocatable :: forces(:)
+    !> True at the first points of this rank's nodes whose layers they hold together, (points)
+    logical, allocatable :: holds(:)
   contains
     procedure :: prepare
     procedure :: constrain
@@ -95,6 +97,8 @@ contains
     if (size(self%rig) > 0) call replace_dependents(plate, self%points)
     self%list%local = plate%distribution%local([self%points])
     where (self%list%local > plate%distribution%owned) self%list%local = 0
+    allocate (self%holds(size(plate%distribution%points)), source=.false.)
+    self%holds(pack(self%list%local, self%list%local > 0)) = .true.
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
 

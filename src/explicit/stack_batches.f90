@@ -95,8 +95,6 @@ module stack_batches
     real(wp), dimension(lanes, 3) :: forces, given
     !> Force per jump at the end of the step by the cohesive law: shear, opening
     real(wp) :: secant(lanes, 2)
-    !> Force per opening, with contact
-    real(wp) :: normal(lanes)
     type(past_lanes_t) :: past
     type(surface_lanes_t) :: surfaces
   end type layer_lanes_t

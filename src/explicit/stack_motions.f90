@@ -6,10 +6,10 @@ module stack_motions
   use kinds, only: wp
   use line_steps, only: line_steps_t
   use composite_plates, only: composite_plate_t
-  use nodal_inertia, only: nodal_inertia_t
+  use nodal_inertia, only: along_z, nodal_inertia_t
   use rig_steps, only: rig_steps_t
   use stack_batches, only: layer_lanes_t, load_layers, new_stack_batches, stack_batch_t, stack_batches_t, store_layers
-  use stack_solutions, only: solve_damaged, solve_intact, solve_tractions
+  use stack_solutions, only: solve_damaged, solve_intact, solve_openings, solve_tractions
   use stack_updates, only: start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: newest, past_jumps
@@ -76,7 +76,8 @@ contains
 
     do i = 1, size(constrained)
       associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
-        constrained(i) = nodes%rigs%on_frame(first) .or. any(nodes%lines%line(:, first:last) >= 0)
+        constrained(i) = nodes%rigs%on_frame(first) .or. nodes%rigs%circles%holds(first) .or. &
+                         any(nodes%lines%line(:, first:last) >= 0)
       end associate
     end do
   end function are_constrained
@@ -125,7 +126,10 @@ contains
       do j = 0, batch%n
         call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
       end do
-      if (batch%constrained) call prescribe(batch, nodes%lines, layers)
+      if (batch%constrained) then
+        call prescribe(batch, nodes%lines, layers)
+        call hold_together(batch, nodes%rigs%circles%holds, layers)
+      end if
       call find_rates(batch, layers)
       do j = 1, batch%n
         layers(j)%trial = layers(j)%u(:, :3) + steps%now*layers(j)%rates(:, :3)
@@ -140,7 +144,10 @@ contains
       do j = 0, batch%n
         call accelerate(batch%layers(j)%inverse, steps%mean(), layers(j)%force, layers(j)%velocity)
       end do
-      if (batch%constrained) call record_reactions(batch, nodes, layers)
+      if (batch%constrained) then
+        call hold_together(batch, nodes%rigs%circles%holds, layers)
+        call record_reactions(batch, nodes, layers)
+      end if
       call find_rates(batch, layers)
       do j = 1, batch%n
         layers(j)%change = steps%now*layers(j)%rates(:, :3)
@@ -257,6 +264,40 @@ contains
     end do
   end subroutine prescribe
 
+  !> Gives all layers of nodes on a circular window the mean velocity along w, weighted with their inertia. The frame
+  !> acts on w of the node; if layers moved apart, it would do work on their openings.
+  pure subroutine hold_together(batch, holds, layers)
+    type(stack_batch_t), intent(in) :: batch
+    !> True at first points of such nodes, (points)
+    logical, intent(in) :: holds(:)
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp), dimension(lanes) :: momentum, inertia
+    logical, dimension(lanes) :: held, fixed
+    integer :: j
+
+    held = holds(batch%first)
+    if (batch%n == 0 .or. .not. any(held)) return
+    momentum = 0
+    inertia = 0
+    fixed = .false.
+    do j = 0, batch%n
+      associate (inverse => batch%layers(j)%inverse(:, along_z))
+        fixed = fixed .or. .not. inverse > 0
+        where (inverse > 0)
+          momentum = momentum + layers(j)%velocity(:, 3)/inverse
+          inertia = inertia + 1/inverse
+        end where
+      end associate
+    end do
+    where (fixed)
+      momentum = 0
+      inertia = 1
+    end where
+    do j = 0, batch%n
+      where (held) layers(j)%velocity(:, 3) = momentum/inertia
+    end do
+  end subroutine hold_together
+
   !> Stops lowest layers at frames that they would penetrate.
   pure subroutine stop_at_frames(batch, rigs, steps, layers)
     type(stack_batch_t), intent(in) :: batch
@@ -264,7 +305,7 @@ contains
     type(step_lengths_t), intent(in) :: steps
     type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
     real(wp), dimension(lanes) :: w, mobility, held
-    real(wp) :: normal(lanes, batch%n), given(lanes, batch%n), forces(lanes, batch%n), rate
+    real(wp) :: forces(lanes, batch%n), rate
     logical :: stops(lanes)
     integer :: lane, j
 
@@ -278,19 +319,15 @@ contains
               .and. w + steps%now*(lowest%velocity(:, 3) - mobility*lowest%forces(:, 3)) > 0
       if (any(stops) .and. batch%n > 0) then
         do j = 1, batch%n
-          associate (layer => layers(j), stiffness => batch%layers(j)%stiffness(:, 2))
-            normal(:, j) = layer%normal
-            given(:, j) = layer%given(:, 3)
-            if (.not. batch%damaged) then
-              normal(:, j) = newest*stiffness
-              given(:, j) = stiffness*past_jumps(layer%u(:, 3), layer%past%change(:, 3), layer%past%earlier(:, 3))
-            end if
-            forces(:, j) = layer%forces(:, 3)
-          end associate
+          forces(:, j) = layers(j)%forces(:, 3)
         end do
         where (stops) lowest%trial(:, 3) = lowest%u(:, 3) - w - steps%now*layers(batch%n - 1)%velocity(:, 3)
         held = merge(steps%now*steps%mean()*batch%layers(batch%n)%inverse(:, 7), 0.0_wp, stops)
-        call solve_tractions(batch, 3, normal, given, held, layers)
+        if (batch%damaged) then
+          call solve_openings(batch, held, layers)
+        else
+          call solve_intact_openings(batch, held, layers)
+        end if
         do j = 1, batch%n
           where (.not. stops) layers(j)%forces(:, 3) = forces(:, j)
         end do
@@ -304,6 +341,24 @@ contains
       end do
     end associate
   end subroutine stop_at_frames
+
+  !> Forces normal to the surfaces of undamaged stacks.
+  pure subroutine solve_intact_openings(batch, lowest, layers)
+    type(stack_batch_t), intent(in) :: batch
+    !> Compliance that the lowest layer does not have: its own where it is held
+    real(wp), intent(in) :: lowest(lanes)
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    real(wp) :: normal(lanes, batch%n), given(lanes, batch%n)
+    integer :: j
+
+    do j = 1, batch%n
+      associate (layer => layers(j), stiffness => batch%layers(j)%stiffness(:, 2))
+        normal(:, j) = newest*stiffness
+        given(:, j) = stiffness*past_jumps(layer%u(:, 3), layer%past%change(:, 3), layer%past%earlier(:, 3))
+      end associate
+    end do
+    call solve_tractions(batch, 3, normal, given, lowest, layers)
+  end subroutine solve_intact_openings
 
   !> Velocities of layers stopped by frames, and reactions of lines.
   pure subroutine record_reactions(batch, nodes, layers)

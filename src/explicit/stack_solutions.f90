@@ -25,7 +25,7 @@ module stack_solutions
   use weighted_jumps, only: newest, past_jumps, past_openings, past_weights
   implicit none
   private
-  public :: energy_of, may_grow, solve_damaged, solve_intact, solve_tractions
+  public :: energy_of, may_grow, solve_damaged, solve_intact, solve_openings, solve_tractions
 
   !> Of layers that frames do not hold.
   real(wp), parameter :: unheld(lanes) = 0
@@ -98,7 +98,8 @@ contains
     do j = 1, batch%n
       call weigh_jumps(batch%layers(j), layers(j))
     end do
-    call solve_openings(batch, layers)
+    call solve_openings(batch, unheld, layers)
+    call limit_friction(batch, layers)
     call solve_shears(batch, layers)
     if (cohesive%is_held) return
     do k = 1, 3
@@ -115,7 +116,8 @@ contains
       any_grows = any_grows .or. any(grows)
     end do
     if (.not. any_grows) return
-    call solve_openings(batch, layers)
+    call solve_openings(batch, unheld, layers)
+    call limit_friction(batch, layers)
     call solve_shears(batch, layers)
   end subroutine solve_damaged
 
@@ -142,11 +144,12 @@ contains
     end associate
   end subroutine weigh_jumps
 
-  !> Forces normal to the surfaces, and limits of friction. The active set of contacts is that of the last solution,
-  !> until it no longer changes; the law is monotonic, so the iteration converges. Lanes that have converged repeat
-  !> their solution.
-  pure subroutine solve_openings(batch, layers)
+  !> Forces normal to the surfaces. The active set of contacts is that of the last solution, until it no longer changes;
+  !> the law is monotonic, so the iteration converges. Lanes that have converged repeat their solution.
+  pure subroutine solve_openings(batch, lowest, layers)
     type(stack_batch_t), intent(in) :: batch
+    !> Compliance that the lowest layer does not have: its own where it is held
+    real(wp), intent(in) :: lowest(lanes)
     type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
     real(wp), dimension(lanes, batch%n) :: normal, given, openings
     logical :: closed(lanes, batch%n), now(lanes), changed
@@ -160,8 +163,9 @@ contains
       do j = 1, batch%n
         normal(:, j) = merge(batch%layers(j)%stiffness(:, 2), layers(j)%secant(:, 2), closed(:, j))
       end do
-      call solve_tractions(batch, 3, normal, given, unheld, layers)
+      call solve_tractions(batch, 3, normal, given, lowest, layers)
       openings = jumps_of(batch, 3, layers)
+      openings(:, batch%n) = openings(:, batch%n) + lowest*layers(batch%n)%forces(:, 3)
       changed = .false.
       do j = 1, batch%n
         now = openings(:, j) < 0 .and. batch%layers(j)%contact
@@ -170,12 +174,19 @@ contains
       end do
       if (.not. changed) exit
     end do
+  end subroutine solve_openings
+
+  !> Limits of friction by the pressure.
+  pure subroutine limit_friction(batch, layers)
+    type(stack_batch_t), intent(in) :: batch
+    type(layer_lanes_t), intent(inout) :: layers(0:batch%n)
+    integer :: j
+
     do j = 1, batch%n
-      layers(j)%normal = normal(:, j)
       layers(j)%surfaces%limit = merge(batch%layers(j)%friction*layers(j)%surfaces%damage &
                                        *max(0.0_wp, -layers(j)%forces(:, 3)), 0.0_wp, batch%layers(j)%contact)
     end do
-  end subroutine solve_openings
+  end subroutine limit_friction
 
   !> Jumps in one direction at the end of the step with the forces found.
   pure function jumps_of(batch, k, layers) result(jumps)
