@@ -25,7 +25,7 @@ module nose_steps
   !> Positions of the nose in a contact whose force is half a sine: twice as many change the mean by less than 1 %.
   integer, parameter :: positions = 40
   !> Largest number of elements along a side below the nose: contacts of more elements do not limit the step.
-  integer, parameter :: most_cells = 16
+  integer, parameter :: max_cells = 16
 
 contains
 
@@ -43,7 +43,7 @@ contains
     if (.not. (deck%setup%impactor%spreads .and. deck%expected%of_impact)) return
     setup = small_setup(deck, 2, deck%setup%zones%at(deck%setup%mesh%struck))
     radius = sqrt(deck%setup%contact_radius()*deck%expected%indentation)
-    setup%mesh%elements = min(most_cells, 2*ceiling(radius/minval(setup%plate%length/2)) + 2)
+    setup%mesh%elements = min(max_cells, 2*ceiling(radius/minval(setup%plate%length/2)) + 2)
     setup%plate%length = setup%plate%length/2*setup%mesh%elements
     setup%impactor = deck%setup%impactor
     call create_model(setup, alone, model, error)
