@@ -60,9 +60,9 @@ module delamination_deck
       &Strength of the cohesive law in pure opening. | law = cohesive', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure shear. | law = cohesive | strength', &
-    'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner side | > 0 | &
-      &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the thinner side. | &
-      &law = cohesive', &
+    'delamination | stiffness | real | 1 | pressure/length | = 5 n E2/h of the thinner side | > 0 | &
+      &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the &
+      &thinner side; n: number of interfaces. | law = cohesive', &
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
       &Coulomb''s coefficient of friction of damaged surfaces that are closed. | law = cohesive, not contact = none', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &

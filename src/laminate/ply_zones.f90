@@ -4,6 +4,7 @@ module ply_zones
   use kinds, only: wp
   use laminate_parameters, only: laminate_t
   use material_parameters, only: material_t
+  use mean_stiffnesses, only: sub_plies_of
   use plies, only: ply_t
   use ply_zone_parameters, only: back_face, doubler_t, front_face, ply_drop_t
   use ply_stacks, only: ply_stack_t, whole_stack
@@ -313,7 +314,7 @@ contains
     skin = stacked_plies(laminate, materials)
     number = [(i, i=1, size(skin))]
     next = size(skin) + 1
-    if (allocated(self%drops)) call drop_plies(self%drops, here(doublers + 1:), skin, number)
+    if (allocated(self%drops)) call drop_plies(self%drops, here(doublers + 1:), laminate%bending_error, skin, number)
     allocate (above(0), below(0), numbers_above(0), numbers_below(0))
     outer = [1, size(laminate%material)]
     do i = 1, doublers
@@ -334,11 +335,14 @@ contains
                         [spread(outer(1), 1, size(above)), number, spread(outer(2), 1, size(below))])
   end function stack
 
-  !> Takes away the plies that are missing; the others close the gaps.
-  pure subroutine drop_plies(drops, here, plies, number)
+  !> Takes away the plies that are missing; the others close the gaps, and those with E1c are divided for the thickness
+  !> left.
+  pure subroutine drop_plies(drops, here, bending_error, plies, number)
     type(ply_drop_t), intent(in) :: drops(:)
     !> True for those at the place
     logical, intent(in) :: here(:)
+    !> Error of the bending stiffness by these plies
+    real(wp), intent(in) :: bending_error
     type(ply_t), allocatable, intent(inout) :: plies(:)
     !> Their numbers
     integer, allocatable, intent(inout) :: number(:)
@@ -365,6 +369,7 @@ contains
     end do
     number = pack(number, kept)
     plies = pack(plies, kept)
+    plies%sub_plies = sub_plies_of(plies, sum(thickness, mask=kept), bending_error)
   end subroutine drop_plies
 
   !> Plies of a doubler on a face at a height.

@@ -52,21 +52,25 @@ contains
                                                      above%elasticity%e2/thickness, thickness, &
                                                      moving=setup%has_inertia())
         if (interface%law == law_cohesive) &
-          self%cohesive_laws(zone) = cohesive_law_of(interface, above%elasticity%e2, thickness)
+          self%cohesive_laws(zone) = cohesive_law_of(interface, above%elasticity%e2, &
+                                                     thickness/size(mesh%zones))
       end associate
     end do
   end function new_interface_laws
 
   !> Cohesive law of an interface between plies of the skin.
-  pure type(cohesive_law_t) function law_between_plies(interface, plies) result(law)
+  pure type(cohesive_law_t) function law_between_plies(interface, plies, interfaces) result(law)
     !> The interface
     type(delamination_t), intent(in) :: interface
     !> Plies of the skin
     type(ply_t), intent(in) :: plies(:)
+    !> Number of interfaces of the plate
+    integer, intent(in) :: interfaces
 
     associate (above => plies(interface%below_ply))
-      law = cohesive_law_of(interface, above%elasticity%e2, min(above%z_bottom - plies(1)%z_top, &
-                                                                plies(size(plies))%z_bottom - above%z_bottom))
+      law = cohesive_law_of(interface, above%elasticity%e2, &
+                            min(above%z_bottom - plies(1)%z_top, plies(size(plies))%z_bottom - above%z_bottom) &
+                            /interfaces)
     end associate
   end function law_between_plies
 
@@ -74,7 +78,7 @@ contains
   pure type(cohesive_law_t) function cohesive_law_of(interface, modulus, thickness) result(law)
     !> The interface
     type(delamination_t), intent(in) :: interface
-    !> E2 of the ply above it, thickness of the laminate on its thinner side
+    !> E2 of the ply above it, thickness of the laminate on its thinner side over the number of interfaces
     real(wp), intent(in) :: modulus, thickness
 
     law = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &

@@ -55,7 +55,7 @@ contains
         if (interface%law /= law_cohesive .or. interface%bonds_doublers()) cycle
         at = findloc(stack%number, interface%below_ply, 1)
         if (at < 1 .or. at > size(unit%shear, 3)) cycle
-        law = law_between_plies(interface, skin)
+        law = law_between_plies(interface, skin, size(setup%delaminations))
         if (.not. law%stiffness_shear > 0) cycle
         below = 1 - (unit%carried(1, 1, at) + unit%carried(2, 2, at))/2
         added = added + sum(unit%shear(:, :, at)**2)/(2*law%stiffness_shear)*spread_over(setup, interface) + &

@@ -1,5 +1,5 @@
-"""Manual: the number of steps that `implam check` foresees is that of the run, within 5 % without damage, a fifth below a
-nose on thin layers, and a third where damage lengthens the contact.
+"""Manual: the number of steps that `implam check` foresees is that of the run, within 5 % without damage, a fifth below
+a nose on thin layers, and a third where damage lengthens the contact.
 Usage: foreseen_steps.py IMPLAM FOLDER"""
 
 import re

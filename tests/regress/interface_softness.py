@@ -20,13 +20,13 @@ DECK = """&case kinematics='linear' units='SI' /
 """
 STATIC = "&impactor radius=8e-3 travel=2e-5 /\n&static steps=1 /"
 EXPLICIT = "&impactor radius=8e-3 mass=2 velocity=0.3 /\n&time integrator='central_difference' end=1.5e-3 /"
-# Load and zone. Measured: 1.39, 1.41 and .94 % beside 1.31, 1.31 and 1.02 %; on cells of a third 1.57 and .99 %.
+# Load and zone. Measured: 1.38, 1.40 and .93 % beside 1.30, 1.30 and 1.01 %; on cells of a third 1.57 and .99 %.
 TRIALS = {
     "static": (STATIC, "60e-3, 60e-3"),
     "explicit": (EXPLICIT, "60e-3, 60e-3"),
     "zone of half the plate": (STATIC, "30e-3, 30e-3"),
 }
-ALLOWED = 0.15
+SOFT, ALLOWED = "stiffness=1.4e14", 0.15
 
 
 def write(folder, name, load, zone, stiffness=""):
@@ -48,7 +48,7 @@ def main(implam, folder):
     """Compare all trials; a stiffness that adds more than the limit gives a warning."""
     passed = True
     for name, (load, zone) in TRIALS.items():
-        soft = write(folder, name, load, zone)
+        soft = write(folder, name, load, zone, SOFT)
         printed = run([implam, "check", str(soft)])
         expected = float(re.search(r"deflection added by the stiffness of the interfaces +([\d.]+)", printed)[1]) / 100
         computed = compliance(implam, soft) / compliance(
@@ -56,7 +56,7 @@ def main(implam, folder):
         print(f"{name}: expected {100 * expected:.2f} %, computed {100 * computed:.2f} %", flush=True)
         passed &= abs(expected / computed - 1) < ALLOWED
     require(passed, "The deflection that the interfaces add is not the one expected.")
-    softest = write(folder, "softest", EXPLICIT, "60e-3, 60e-3", "strength_shear=25e6")
+    softest = write(folder, "softest", EXPLICIT, "60e-3, 60e-3", f"{SOFT} strength_shear=25e6")
     require("of the intact interfaces adds" in run([implam, "check", str(softest)]), "Soft interfaces have no warning.")
 
 
