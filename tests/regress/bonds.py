@@ -265,7 +265,7 @@ def try_ranks(implam, folder, launcher):
     for ranks in (1, 3):
         path = folder / str(ranks) / "deck.nml"
         path.parent.mkdir(parents=True, exist_ok=True)
-        text = SMALL.format(at="2,4", more="", end=2.2e-4, rest="").replace("velocity=6000", "velocity=8000")
+        text = SMALL.format(at="2,4", more="", end=2.2e-4, rest="").replace("velocity=6000", "velocity=12000")
         path.write_text(text, encoding="utf-8")
         histories.append(run_deck(implam, path, [*launcher, str(ranks)]))
         require_same(histories[-1], histories[0], f"{ranks} ranks")
