@@ -22,9 +22,9 @@ module nose_steps
   private
   public :: steps_below_nose
 
-  !> Positions of the nose in a contact whose force is half a sine: twice as many change the mean by less than 1 %.
+  !> Positions of the nose in a contact whose force is half a sine.
   integer, parameter :: positions = 40
-  !> Largest number of elements along a side below the nose: contacts of more elements do not limit the step.
+  !> Largest number of elements along a side below the nose, which bounds the time of the check.
   integer, parameter :: max_cells = 16
 
 contains
