@@ -22,7 +22,8 @@ module nose_steps
   private
   public :: steps_below_nose
 
-  !> Positions of the nose in a contact whose force is half a sine.
+  !> Positions of the nose in a contact whose force is half a sine. Four times as many, and two and a half times as many
+  !> elements, change the steps of three panels by .5 % at most.
   integer, parameter :: positions = 40
   !> Largest number of elements along a side below the nose, which bounds the time of the check.
   integer, parameter :: max_cells = 16
@@ -78,7 +79,7 @@ contains
                                 deck%expected%force*sin(pi*(i - 0.5_wp)/positions))
       call impact%patch%find_indentation(w, position, alpha)
       call commit_indentation(model%plate%setup%impactor%indentation, indentation, alpha)
-      ratio = ratio + sqrt(sprung%bound(impact%contact_frequency_square(model%plate, indentation))/sprung%squares(1)) &
+      ratio = ratio + sqrt(sprung%bound(impact%allowed_square(model%plate, indentation))/sprung%squares(1)) &
                       /positions
     end do
   end function mean_ratio

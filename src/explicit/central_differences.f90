@@ -25,20 +25,14 @@ module central_differences
   use stable_steps, only: find_sprung_elements, find_stiffened_frequency, highest_element_frequency, sprung_elements_t
   use stack_motions, only: move_stacks, nodal_steps_t
   use states, only: state_t
-  use step_lengths, only: step_lengths_t, commensurate_step
+  use step_lengths, only: allow_for, commensurate_step, lengthening_ratio, step_lengths_t
   use struck_patches, only: create_struck_patch
   implicit none
   private
   public :: central_difference_t
 
-  !> Steps between two updates of the highest frequency by slopes and membrane tension, and relative allowance for its
-  !> increase in between: in these steps a slope changes by less than velocity times time over element length, far below
-  !> a hundredth.
+  !> Steps between two updates of the highest frequency by slopes and membrane tension.
   integer, parameter :: steps_between_frequencies = 16
-  real(wp), parameter :: stiffened_reserve = 1.01_wp
-  !> Ratio of the present to the allowed frequency below which the latter is reduced, and of the present to the longest
-  !> step below which steps are lengthened: steps are up to a fifth shorter than necessary.
-  real(wp), parameter :: lengthening_ratio = 0.8_wp
   !> Fraction of a step by which a sum of n steps, with a round-off of up to n**2/1e16 steps, may miss an event.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
@@ -53,7 +47,7 @@ module central_differences
     type(step_lengths_t), private :: prepared
     !> Highest frequency of the undeformed elements, and with slopes and tension that allowed for by the step
     real(wp) :: frequency = 0, stiffened = 0
-    !> Square of the frequency that slopes and tension add below the impactor, and elements there with contact springs
+    !> Frequency that slopes and tension add below the impactor, allowed for, and elements there with contact springs
     real(wp), private :: sloped = 0
     type(sprung_elements_t), private :: sprung
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
@@ -129,14 +123,13 @@ contains
         modulo(now%step, steps_between_frequencies) == 0) then
       call find_stiffened_frequency(plate, largest_stiffness(now%plies), self%of_elements, self%motion, frequency, &
                                     self%sprung, sloped)
-      if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
-        self%stiffened = stiffened_reserve*frequency
-      if (sloped > self%sloped .or. sloped < lengthening_ratio**2*self%sloped) self%sloped = stiffened_reserve**2*sloped
+      call allow_for(frequency, self%stiffened)
+      call allow_for(sloped, self%sloped)
     end if
     square = self%stiffened**2
     if (plate%setup%impactor%is_present) &
-      square = max(square, self%sloped &
-                           + self%sprung%bound(self%impact%contact_frequency_square(plate, now%impact%indentation)))
+      square = max(square, self%sloped**2 &
+                           + self%sprung%bound(self%impact%allowed_square(plate, now%impact%indentation)))
     step = self%parameters%stable_step(sqrt(square))
   end function longest_step
 

@@ -7,16 +7,12 @@ module impactor_steps
   use models, only: model_t
   use smooth_starts, only: smooth_ramp
   use states, only: state_t
-  use step_lengths, only: step_lengths_t
+  use step_lengths, only: allow_for, step_lengths_t
   use struck_patches, only: struck_patch_t
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_stiffness, indentation_t
   implicit none
   private
   public :: impactor_steps_t
-
-  !> Allowance for an increase of the square of the contact's frequency, and ratio of that square to the one allowed for
-  !> below which the latter is reduced: the step length changes a few times in a contact.
-  real(wp), parameter :: reserve = 1.1_wp, reduction = 0.6_wp
 
   !> The impactor.
   type :: impactor_steps_t
@@ -24,14 +20,15 @@ module impactor_steps
     type(struck_patch_t) :: patch
     !> Its velocity at the middle of the last step
     real(wp) :: velocity = 0
-    !> Square of the contact's frequency allowed for by the step
-    real(wp) :: frequency_square = 0
+    !> The contact's frequency allowed for by the step
+    real(wp) :: frequency = 0
     !> Work of a prescribed travel
     real(wp) :: work = 0
     !> Energy lost by changes of the step length
     real(wp) :: loss = 0
   contains
-    procedure :: contact_frequency_square
+    procedure :: allowed_square
+    procedure :: contact_square
     procedure :: place
     procedure :: move
     procedure :: energy
@@ -40,11 +37,21 @@ module impactor_steps
 
 contains
 
-  !> Square of the frequency of the contact between the impactor and the mass under the patch that the step has to allow
-  !> for, theory (T6). A nose is a spring to each of its points, of which the stiffest on the lightest mass
-  !> is a bound, and, where the law is steeper than Hertz's for this force, one to their mean.
-  real(wp) function contact_frequency_square(self, plate, indentation) result(square)
+  !> Square of the contact's frequency that the step allows for.
+  real(wp) function allowed_square(self, plate, indentation) result(square)
     class(impactor_steps_t), intent(inout) :: self
+    type(composite_plate_t), intent(in) :: plate
+    type(indentation_t), intent(in) :: indentation
+
+    call allow_for(sqrt(self%contact_square(plate, indentation)), self%frequency)
+    square = self%frequency**2
+  end function allowed_square
+
+  !> Square of the frequency of the contact between the impactor and the mass under the patch, theory (T6). A nose is a
+  !> spring to each of its points, of which the stiffest on the lightest mass is a bound, and, where the law is steeper
+  !> than Hertz's for this force, one to their mean.
+  pure real(wp) function contact_square(self, plate, indentation) result(square)
+    class(impactor_steps_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
     type(indentation_t), intent(in) :: indentation
     real(wp) :: slope, inverse_mass
@@ -62,10 +69,7 @@ contains
       end if
       square = square + patch%gain**2*slope*(sum(patch%weights**2*patch%inverse)/copies + inverse_mass)
     end associate
-    if (square > self%frequency_square .or. square < reduction*self%frequency_square) &
-      self%frequency_square = reserve*square
-    square = self%frequency_square
-  end function contact_frequency_square
+  end function contact_square
 
   !> Places the impactor at first contact with the deflected face, or in the dent of an earlier run. Collective.
   subroutine place(self, model, now)
@@ -169,7 +173,7 @@ contains
 
     call self%patch%visit(archive)
     call archive%item('explicit/impactor_velocity', self%velocity)
-    call archive%item('explicit/contact_frequency', self%frequency_square)
+    call archive%item('explicit/contact_frequency', self%frequency)
     call archive%item('explicit/travel_work', self%work)
     call archive%item('explicit/impactor_loss', self%loss)
   end subroutine visit

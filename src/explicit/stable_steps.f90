@@ -24,7 +24,8 @@ module stable_steps
   real(wp), parameter :: gradient_bound = 7.2_wp
   !> The same on a line of three nodes.
   real(wp), parameter :: line_gradient_bound = 6
-  !> Springs of the table of `sprung_elements_t` over the square of the highest frequency without springs
+  !> Springs of the table of `sprung_elements_t` over the square of the highest frequency without springs. With twice as
+  !> many values the steps of two panels below a nose are the same to .02 %.
   real(wp), parameter :: tabulated(*) = [0.0_wp, 0.25_wp, 0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp]
 
   !> Highest frequency of elements with springs that act on w, theory (T6).
@@ -139,9 +140,9 @@ contains
     real(wp), contiguous, intent(in) :: motion(:, :)
     !> The bound
     real(wp), intent(out) :: omega
-    !> Elements below the impactor, for the square of the frequency that slopes and tension add there at most
+    !> Elements below the impactor, for the frequency that slopes and tension add there at most
     type(sprung_elements_t), intent(in), optional :: sprung
-    !> The square
+    !> This frequency
     real(wp), intent(out), optional :: sloped
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), unused(lanes), added(lanes), below
     real(wp), parameter :: unit_area(lanes, 9) = 1
@@ -167,7 +168,7 @@ contains
     omega = sqrt(omega)
     if (.not. present(sloped)) return
     call plate%communicator%maximum(below)
-    sloped = below
+    sloped = sqrt(below)
   end subroutine find_stiffened_frequency
 
   !> Raises the bound of elements with beams to that of their beams, if it is larger: the frequency of both together is

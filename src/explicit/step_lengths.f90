@@ -4,7 +4,14 @@ module step_lengths
   use kinds, only: wp
   implicit none
   private
-  public :: step_lengths_t, commensurate_step
+  public :: step_lengths_t, commensurate_step, allow_for, lengthening_ratio
+
+  !> Allowance for an increase of a frequency before it is found again: in 16 steps a slope changes by less than
+  !> velocity times time over element length, far below a hundredth.
+  real(wp), parameter :: frequency_reserve = 1.01_wp
+  !> Ratio of the present to the allowed frequency below which the latter is reduced, and of the present to the longest
+  !> step below which steps are lengthened: steps are up to a fifth shorter than necessary.
+  real(wp), parameter :: lengthening_ratio = 0.8_wp
 
   !> A step and the one before it.
   type :: step_lengths_t
@@ -63,6 +70,17 @@ contains
 
     works = work(self, force, force_before, change, change_before)
   end function work_in_lanes
+
+  !> Changes the frequency that the step allows for where the present one exceeds it or is far below: steps of
+  !> alternating length excite the highest modes.
+  pure subroutine allow_for(frequency, allowed)
+    !> The present frequency
+    real(wp), intent(in) :: frequency
+    !> The one allowed for
+    real(wp), intent(inout) :: allowed
+
+    if (frequency > allowed .or. frequency < lengthening_ratio*allowed) allowed = frequency_reserve*frequency
+  end subroutine allow_for
 
   !> Longest step, not longer than a bound, of which an integer number equals a time.
   pure real(wp) function commensurate_step(time, longest) result(step)

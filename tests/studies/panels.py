@@ -34,6 +34,7 @@ from tables import page_of, panel_lines
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 DECKS, DATA, PAGE = ROOT / "input" / "experiments", HERE / "panels", ROOT / "doc" / "validation.md"
+BASE_OF = ("panel", "energy", "seed", "version")
 IDENTITY = ("panel", "variant", "energy", "seed", "inputs", "version", "minutes")
 
 
@@ -60,15 +61,19 @@ def read_rows():
 
 
 def usable(rows, panels):
-    """Return the rows of the present decks; of a panel without any the last ones, with the mark `earlier`."""
+    """Return the rows of the present decks; of a panel without any the last ones, with the mark `earlier`.
+
+    A row of a variant has that of the deck as it is by the same version of the program as `base`, where there is one.
+    """
     found = []
+    bases = {tuple(row[key] for key in BASE_OF): row for row in rows if not row["variant"]}
     for name, panel in panels.items():
         for variant in ("", *panel.get("variants", {})):
             own = list({tuple(row[key] for key in IDENTITY[:5]): row for row in rows
                         if (row["panel"], row["variant"]) == (name, variant)}.values())
             present = [row for row in own if row["inputs"] == digest(panel, variant)]
             found += present or [row | {"earlier": "yes"} for row in own if row["inputs"] == own[-1]["inputs"]]
-    return found
+    return [row | {"base": bases.get(tuple(row[key] for key in BASE_OF))} if row["variant"] else row for row in found]
 
 
 def seeds_of(text):

@@ -99,7 +99,9 @@ def cost_of(rows):
 
 
 def variant_lines(name, panel, rows):
-    """Return the differences of the variants of a panel from the deck as it is, over pairs of equal seeds."""
+    """Return the differences of the variants of a panel from the deck as it is, over pairs of equal seeds.
+
+    The pairs are by one version of the program, where there are such."""
     rows = [row for row in rows if "earlier" not in row]
     base = {row["seed"]: row for row in rows if row["panel"] == name and not row["variant"]}
     quantities = [*(entry["of"] for entry in panel["measured"]), *panel.get("shown", [])]
@@ -107,9 +109,10 @@ def variant_lines(name, panel, rows):
     for variant in panel.get("variants", {}):
         own = [row for row in rows if row["panel"] == name and row["variant"] == variant and row["seed"] in base]
         cells = [variant, str(len(own))]
+        pairs = [(row, row.get("base") or base[row["seed"]]) for row in own]
         for quantity in quantities:
-            off = [float(row[quantity]) - float(base[row["seed"]][quantity]) for row in own
-                   if row[quantity] and base[row["seed"]][quantity]]
+            off = [float(row[quantity]) - float(other[quantity]) for row, other in pairs
+                   if row[quantity] and other[quantity]]
             error = f" ± {number(stdev(off) / len(off)**0.5, 2)}" if len(off) > 1 else ""
             cells.append(f"{mean(off):+.3g}{error}" if off else "-")
         lines.append(cells)

@@ -68,11 +68,20 @@ class Jobs(unittest.TestCase):
     def test_earlier_decks(self):
         """Rows of earlier decks are used and marked while there are none of the present ones."""
         panel = {"deck": "hs160_rem_0_90.nml"}
-        old, older = ({"panel": "p", "variant": "", "energy": "1", "seed": "1", "inputs": inputs}
+        old, older = ({"panel": "p", "variant": "", "energy": "1", "seed": "1", "inputs": inputs, "version": "1"}
                       for inputs in ("old", "older"))
         new = old | {"inputs": panels.digest(panel, "")}
         self.assertEqual(panels.usable([older, old], {"p": panel}), [old | {"earlier": "yes"}])
         self.assertEqual(panels.usable([old, new], {"p": panel}), [new])
+
+    def test_pairs_of_one_version(self):
+        """A variant is compared with the run of its own version, not with a later one."""
+        panel = {"deck": "t700_m21_25J.nml", "measured": [{"of": "peak_force", "value": 1}], "variants": {"soft": {}}}
+        first, later, soft = ({"panel": "p", "variant": variant, "energy": "1", "seed": "1", "version": version,
+                               "inputs": panels.digest(panel, variant), "peak_force": force}
+                              for variant, version, force in (("", "1", "2"), ("", "2", "4"), ("soft", "1", "3")))
+        rows = panels.usable([first, soft, later], {"p": panel})
+        self.assertEqual(variant_lines("p", panel, rows)[-1], "| soft | 1 | +1 |")
 
     def test_decks(self):
         """Every panel has decks, its drawn inputs are in them, and equal seeds draw equal decks."""
